@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The least frame that keeps constraints (1)-(10): SizeOpt (15), then TopOpt (17-20) and GeoOpt (21) in turn until the
+// volume falls by less than a percent. Algorithm 1 of Wang et al. 2013, from a given initial frame.
+//
+// Guarantees:
+//  - Same problem and options, same result, bit for bit.
+//  - The result is a value for every ending that is not cancellation or bad input: see Termination.
+//  - Volumes of size, topology and geometry never rise from one to the next.
+//  - `evaluation` is computed afresh from radii and positions, not taken from the optimiser.
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "worker/mechanics/evaluation.h"
+#include "worker/mechanics/frame_problem.h"
+#include "worker/run/result.h"
+#include "worker/run/run_context.h"
+
+namespace skinframe {
+
+// normal . x <= offset_mm.
+struct HalfSpace {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  double offset_mm = 0;
+};
+// The convex region of each node, eq. (7): one list a node, empty for nodes that do not move. A bounded region is not required.
+using NodeRegions = std::vector<std::vector<HalfSpace>>;
+
+struct OptimizeOptions {
+  enum class Order {
+    kPaper,  // SizeOpt, then TopOpt capped at SizeOpt's volume: the printed order
+    kTight,  // relaxed minimum volume first, then TopOpt capped just above the volume reached: 30-65 % less
+  };
+  Order order = Order::kTight;
+
+  // Which stages run. Sizing always runs; the others build upon it.
+  bool topology = true;
+  bool geometry = true;
+
+  // The regions of the free nodes about the present frame, asked for before each geometry pass. Empty: a box around each
+  // free node of half width region_share times the distance to its nearest neighbour.
+  std::function<NodeRegions(const Frame&, const std::vector<double>& radii_mm)> convex_regions;
+  // Geometry's veto on a moved and re-sized frame. False: the pass's move is halved up to max_move_halvings times, then
+  // the pass is dropped. Empty: every frame is accepted.
+  std::function<bool(const Frame&, const std::vector<double>& radii_mm)> accepts;
+
+  // Interior point: scaled Karush-Kuhn-Tucker error <= kkt_tolerance (nondimensional problem), range (0, 1e-3].
+  double kkt_tolerance = 1e-7;
+  int max_interior_point_iterations = 300;  // of one program, > 0
+
+  // A frame is feasible when every ratio <= 1 + feasibility_tolerance, range (0, 1e-2].
+  double feasibility_tolerance = 1e-6;
+
+  // Algorithm 1 stops when volume > (1 - outer_decrease) * volume before, range [0, 1).
+  double outer_decrease = 0.01;
+  int max_outer_iterations = 10;  // > 0
+
+  // TopOpt: cap = (1 + topology_cap_room) * volume (20), range (0, 1).
+  double topology_cap_room = 0.005;
+  int topology_reweightings = 2;  // > 0
+  // Weights 1 / (topology_xi * mean area + A), range (0, 1]. xi of (18), in A.
+  double topology_xi = 1e-2;
+  // A strut goes when A <= removal_share * lower bound, after the relaxed and after the reweighted program; (0, 1).
+  double relaxed_removal_share = 0.25;
+  double topology_removal_share = 0.05;
+
+  // GeoOpt: passes a round; a pass counts when volume <= (1 - geometry_decrease) * volume before.
+  int max_geometry_passes = 4;      // > 0
+  double geometry_decrease = 0.002;  // [0, 1)
+  double region_share = 0.45;        // of the distance to the nearest neighbour, (0, 0.5)
+  double min_length_mm = 0;          // struts of free nodes stay at least this long; 0: half of their present length
+  int max_move_halvings = 3;         // >= 0
+
+  Status validate() const;
+};
+
+enum class Termination {
+  kOptimal,         // every stage ended at its optimum (a local one for topology and geometry)
+  kInfeasible,      // constraints cannot hold: violated_constraint says which; radii are at the best reachable
+  kIterationLimit,  // feasible, but some interior point stopped before its tolerance
+  kStalled,         // no feasible frame found, and none proven impossible
+};
+
+const char* to_string(Termination termination);
+
+struct StageRecord {
+  int nodes = 0;
+  int struts = 0;
+  double volume_mm3 = 0;
+};
+
+struct OptimizeResult {
+  Termination reason = Termination::kOptimal;
+  std::string detail;                     // one sentence for people
+  FrameProblem problem;                   // the reduced frame at its final positions
+  std::vector<double> radii_mm;           // one a strut of problem.frame
+  std::vector<std::vector<Eigen::Vector3d>> displacements_mm;  // one list a load case
+  Evaluation evaluation;                  // of radii_mm in problem
+  // initial: the frame as given, at its lower bounds. size, topology, geometry: sized frames; a stage that did not run
+  // repeats the one before.
+  StageRecord initial, size, topology, geometry;
+  int outer_iterations = 0;               // of Algorithm 1
+  int interior_point_iterations = 0;      // over all programs
+  double kkt_residual = 0;                // of the last sizing: scaled, nondimensional
+  // No frame of the input's nodes and struts within the area bounds of SizeOpt has less volume. Absent: no bound is known.
+  std::optional<double> lower_bound_mm3;
+  std::optional<double> best_reachable_displacement_mm;  // when infeasible
+  std::string violated_constraint;        // when infeasible: displacement, axial stress, shear stress, balance, equilibrium
+  std::map<std::string, double> seconds;  // "size", "topology", "geometry"
+  std::vector<int> node_origin;           // index in the input frame, one a node of problem.frame
+  std::vector<int> strut_origin;          // the same for struts
+};
+
+// Errors: invalid input (problem or options), cancelled, internal (a library gave up).
+Result<OptimizeResult> optimize_frame(const FrameProblem& problem, const OptimizeOptions& options, RunContext& context);
+
+}  // namespace skinframe
