@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# Installs the Debian 12 packages that are missing: those to build and run, and with "tests" those that only
+# the tests need. Silent and quick when all are there.
+set -euo pipefail
+
+build=(g++ cmake ninja-build pkg-config libeigen3-dev libcgal-dev libceres-dev libgrpc++-dev libprotobuf-dev
+       protobuf-compiler protobuf-compiler-grpc libspdlog-dev libfmt-dev nlohmann-json3-dev libcli11-dev
+       libsuitesparse-dev libmetis-dev libopenblas-dev liblapack-dev libopenvdb-dev libtbb-dev libboost-dev
+       libboost-iostreams-dev libblosc-dev zlib1g-dev libsqlite3-dev libssl-dev)
+tests=(libgtest-dev libgmock-dev prusa-slicer openssl)
+
+wanted=("${build[@]}")
+[ "${1:-}" = tests ] && wanted+=("${tests[@]}")
+
+missing=()
+for package in "${wanted[@]}"; do
+  [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+done
+[ ${#missing[@]} -eq 0 ] && exit 0
+
+as_root=()
+if [ "$(id -u)" -ne 0 ]; then
+  command -v sudo >/dev/null || { echo "install-packages: root or sudo is needed for: ${missing[*]}" >&2; exit 1; }
+  as_root=(sudo)
+fi
+echo "Installing ${#missing[@]} Debian packages: ${missing[*]}" >&2
+"${as_root[@]}" apt-get update -q >&2
+"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends "${missing[@]}" >&2
