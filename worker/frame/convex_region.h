@@ -19,17 +19,10 @@
 #include <vector>
 
 #include "worker/frame/frame.h"
+#include "worker/frame/half_space.h"
 #include "worker/skin/build_skin.h"
 
 namespace skinframe {
-
-// All x with normal.x <= offset_mm; the normal has length 1.
-struct HalfSpace {
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-  double offset_mm = 0.0;
-};
-
-using NodeRegions = std::vector<std::vector<HalfSpace>>;
 
 // radii_mm: one a strut of the frame.
 NodeRegions convex_regions(const Frame& frame, const std::vector<double>& radii_mm, const Skin& skin);

@@ -16,20 +16,13 @@
 #include <string>
 #include <vector>
 
+#include "worker/frame/half_space.h"
 #include "worker/mechanics/evaluation.h"
 #include "worker/mechanics/frame_problem.h"
 #include "worker/run/result.h"
 #include "worker/run/run_context.h"
 
 namespace skinframe {
-
-// normal . x <= offset_mm.
-struct HalfSpace {
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  double offset_mm = 0;
-};
-// The convex region of each node, eq. (7): one list a node, empty for nodes that do not move. A bounded region is not required.
-using NodeRegions = std::vector<std::vector<HalfSpace>>;
 
 struct OptimizeOptions {
   enum class Order {
