@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reads a triangle mesh from a file: STL (binary, ASCII), OBJ, PLY (ASCII, both endians), OFF.
+//
+// Guarantees:
+//  1. The type is decided by the file's content, never by its name.
+//  2. Every index of the mesh names a vertex, every coordinate is finite, there is at least one triangle.
+//     Vertices that no triangle uses are dropped, so that the bounding box is that of the surface.
+//  3. No memory is taken on the word of a header: a count is compared with the bytes that are there first.
+//  4. Polygons are triangulated by ear clipping; nothing else is changed. STL corners that are equal to the
+//     last bit share a vertex (STL knows no sharing); near misses are left to repair().
+//
+// Errors: kInvalidInput names the element ("line 17: ...", "triangle 41: index 9000 of 512 vertices");
+// kUnsupported for 3MF; kIo when the file cannot be opened or read; kCancelled.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "worker/mesh/triangle_mesh.h"
+#include "worker/run/result.h"
+#include "worker/run/run_context.h"
+
+namespace skinframe {
+
+// Above these a file is refused before anything of its size is allocated.
+struct ReadLimits {
+  std::uint64_t max_file_bytes = std::uint64_t{1} << 30;
+  std::uint64_t max_vertices = 20'000'000;   // at most 2^31 - 1: indices are int
+  std::uint64_t max_triangles = 10'000'000;  // at most 2^31 - 1
+  std::uint64_t max_polygon_corners = 10'000;  // of one face; ear clipping is quadratic
+
+  Status validate() const;
+};
+
+struct MeshFile {
+  TriangleMesh mesh;               // in the file's own units
+  std::string format;              // "STL (binary)", "STL (ASCII)", "OBJ", "PLY", "OFF"
+  std::vector<std::string> notes;  // what was done beside reading: "triangulated 12 polygons"
+};
+
+Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadLimits& limits, RunContext& context);
+
+}  // namespace skinframe
