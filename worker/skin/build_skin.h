@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The skin: what lies between the input surface M and its inner offset M1 at the skin thickness h_S = 2 eta
-// (Wang et al. 2013, section 4.1). M1 is the iso-surface at -h_S of the signed distance to M; where M is thinner
-// than 2 h_S there is no M1 and the part is solid, and M1 may fall into several pieces.
+// (Wang et al. 2013, section 4.1). M1 is the iso-surface at -h_S of the signed distance to M; where M is
+// thinner than 2 h_S there is no M1 and the part is solid, and M1 may fall into several pieces.
 //
 // Example: auto skin = build_skin(solid, {.thickness_mm = 1.0}, context);
 #pragma once
@@ -18,8 +18,9 @@ namespace skinframe {
 class Solid;
 
 struct SkinOptions {
-  double thickness_mm = 1.0;         // h_S, > 0
-  std::optional<double> voxel_mm;    // fine grid, in [h_S / 20, h_S]; default 0.3 h_S = 0.6 eta, coarser on large bodies
+  double thickness_mm = 1.0;  // h_S, > 0
+  std::optional<double>
+      voxel_mm;  // fine grid, in [h_S / 20, h_S]; default 0.3 h_S = 0.6 eta, coarser on large bodies
   Status validate() const;
 };
 
@@ -27,15 +28,16 @@ struct Skin {
   double thickness_mm = 0.0;
   double voxel_mm = 0.0;
   DistanceField field;
-  // M1 from the coarse grid (about 1 mm at 200 mm), closed and outward, for sampling. Empty where all is thin.
+  // M1 from the coarse grid (about 1 mm at 200 mm), closed and outward, for sampling. Empty where all is
+  // thin.
   TriangleMesh inner_surface;
-  double cavity_volume_mm3 = 0.0;    // of M1, from the fine grid
-  double volume_mm3 = 0.0;           // M minus M1
+  double cavity_volume_mm3 = 0.0;                         // of M1, from the fine grid
+  double volume_mm3 = 0.0;                                // M minus M1
   Eigen::Vector3d centroid_mm = Eigen::Vector3d::Zero();  // of the skin's volume
 };
 
-// Errors: kInvalidInput when a grid would hold more voxels than memory is granted (the message names the remedy: a
-// larger --voxel or a smaller --size), decided before any is taken; kCancelled.
+// Errors: kInvalidInput when a grid would hold more voxels than memory is granted (the message names the
+// remedy: a larger --voxel or a smaller --size), decided before any is taken; kCancelled.
 Result<Skin> build_skin(const Solid& solid, const SkinOptions& options, RunContext& context);
 
 // The same for a mesh that the caller knows to be closed and outward.

@@ -15,10 +15,12 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <utility>
 
 namespace skinframe {
 
-struct DistanceGrids;  // worker/skin/distance_grids.h: OpenVDB's types, for .cpp files of skin and export only
+struct DistanceGrids;  // worker/skin/distance_grids.h: OpenVDB's types, for .cpp files of skin and export
+                       // only
 
 class DistanceField {
  public:

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/skin/build_skin.h"
+
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "worker/skin/distance_grids.h"
+#include "worker/skin/level_set.h"
+#include "worker/skin/mend_edges.h"
+#include "worker/solid/solid.h"
+
+namespace skinframe {
+namespace {
+
+constexpr double kDefaultVoxelInThicknesses = 0.3;
+constexpr double kCoarseCellsAcross =
+    200.0;  // of the largest edge of the box: at most 8 million coarse voxels
+constexpr double kOuterVoxels = 3.0;
+constexpr double kSpareInnerVoxels = 4.0;
+// The fine grid holds some 24 voxels under and over every voxel's square of surface, 8 bytes each while it is
+// made: 3 million squares are 600 MB at worst.
+constexpr double kMaxSurfaceSquares = 3e6;
+
+Result<double> choose_voxel(const SkinOptions& options, double area_mm2) {
+  const double least = std::sqrt(area_mm2 / kMaxSurfaceSquares);
+  const double h = options.thickness_mm;
+  const double voxel = options.voxel_mm.value_or(std::max(kDefaultVoxelInThicknesses * h, least));
+  if (voxel < least * (1.0 - 1e-9) || voxel > h) {
+    return invalid_input(
+        fmt::format("a surface of {:.0f} mm2 at voxels of {:.3g} mm takes more memory than is granted, or "
+                    "voxels coarser than the "
+                    "skin of {:.3g} mm: use a --voxel of at least {:.3g} mm (at most the skin's thickness) "
+                    "or a smaller --size",
+                    area_mm2, std::min(voxel, h), h, least));
+  }
+  return voxel;
+}
+
+Status check_mesh(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) return invalid_input("the mesh has no triangles: nothing can be given a skin");
+  const double volume = signed_volume(mesh);
+  if (!(volume > 0.0) || !std::isfinite(volume)) {
+    return invalid_input(
+        fmt::format("the mesh encloses {:.3g} mm3: a closed, outward mesh is needed", volume));
+  }
+  return ok_status();
+}
+
+Result<Skin> build(const TriangleMesh& mesh, const SkinOptions& options, const RunContext& context) {
+  const auto voxel = choose_voxel(options, surface_area(mesh));
+  if (!voxel) return voxel.error();
+
+  auto grids = std::make_shared<DistanceGrids>();
+  const double extent = bounding_box(mesh).extent().maxCoeff();
+  grids->voxel_mm = *voxel;
+  grids->coarse_voxel_mm = std::max(*voxel, extent / kCoarseCellsAcross);
+  const double inner_voxels = std::ceil(options.thickness_mm / *voxel) + kSpareInnerVoxels;
+  grids->inner_band_mm = inner_voxels * *voxel;
+  grids->outer_band_mm = kOuterVoxels * *voxel;
+  grids->fine = distance_grid(mesh, *voxel, kOuterVoxels, inner_voxels);
+  if (context.cancelled()) return cancelled_error();
+  grids->coarse = distance_grid(mesh, grids->coarse_voxel_mm, kOuterVoxels, kCoarseCellsAcross);
+  if (context.cancelled()) return cancelled_error();
+
+  Skin skin;
+  skin.thickness_mm = options.thickness_mm;
+  skin.voxel_mm = *voxel;
+  const double volume = signed_volume(mesh);
+  Eigen::Vector3d moment = volume * volume_centroid(mesh);
+  const TriangleMesh cavity = iso_surface(*grids->fine, -options.thickness_mm);
+  if (!cavity.triangles.empty()) {
+    skin.cavity_volume_mm3 = std::clamp(signed_volume(cavity), 0.0, volume);
+    if (skin.cavity_volume_mm3 > 0.0) moment -= skin.cavity_volume_mm3 * volume_centroid(cavity);
+  }
+  skin.volume_mm3 = volume - skin.cavity_volume_mm3;
+  if (skin.volume_mm3 > 0.0) skin.centroid_mm = moment / skin.volume_mm3;
+  if (context.cancelled()) return cancelled_error();
+
+  skin.inner_surface = iso_surface(*grids->coarse, -options.thickness_mm);
+  if (!mend_edges(skin.inner_surface).manifold) {
+    return internal_error("the inner surface of the skin is not closed: try another --voxel");
+  }
+  skin.field = DistanceField(std::move(grids));
+  return skin;
+}
+
+}  // namespace
+
+Status SkinOptions::validate() const {
+  if (!(thickness_mm > 0.0) || !std::isfinite(thickness_mm)) {
+    return invalid_input(fmt::format("skin thickness {:.3g} mm: must be above 0", thickness_mm));
+  }
+  if (voxel_mm && !(*voxel_mm >= thickness_mm / 20.0 && *voxel_mm <= thickness_mm)) {
+    return invalid_input(
+        fmt::format("--voxel {:.3g} mm: must lie between {:.3g} and {:.3g} mm, a twentieth of the "
+                    "skin's thickness and all of it",
+                    *voxel_mm, thickness_mm / 20.0, thickness_mm));
+  }
+  return ok_status();
+}
+
+Result<Skin> build_skin(const Solid& solid, const SkinOptions& options, RunContext& context) {
+  return build_skin(solid.mesh(), options, context);
+}
+
+Result<Skin> build_skin(const TriangleMesh& closed_mesh, const SkinOptions& options, RunContext& context) {
+  if (auto status = options.validate(); !status) return status.error();
+  if (auto status = check_mesh(closed_mesh); !status) return status.error();
+  if (context.cancelled()) return cancelled_error();
+  try {
+    tbb::task_arena arena(std::max(1, context.threads));
+    return arena.execute([&] { return build(closed_mesh, options, context); });
+  } catch (const std::exception& e) {
+    return internal_error(fmt::format("the skin could not be made: {}", e.what()));
+  }
+}
+
+}  // namespace skinframe

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/skin/level_set.h"
+
+#include <openvdb/tools/MeshToVolume.h>
+#include <openvdb/tools/VolumeToMesh.h>
+
+namespace skinframe {
+
+openvdb::FloatGrid::Ptr distance_grid(const TriangleMesh& mesh, double voxel_mm, double outer_voxels,
+                                      double inner_voxels) {
+  openvdb::initialize();
+  std::vector<openvdb::Vec3s> points;
+  points.reserve(mesh.vertices.size());
+  for (const auto& v : mesh.vertices) points.emplace_back(v.x(), v.y(), v.z());
+  std::vector<openvdb::Vec3I> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
+  const auto transform = openvdb::math::Transform::createLinearTransform(voxel_mm);
+  return openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
+      *transform, points, triangles, {}, static_cast<float>(outer_voxels), static_cast<float>(inner_voxels));
+}
+
+TriangleMesh iso_surface(const openvdb::FloatGrid& grid, double iso_mm) {
+  std::vector<openvdb::Vec3s> points;
+  std::vector<openvdb::Vec3I> triangles;
+  std::vector<openvdb::Vec4I> quads;
+  openvdb::tools::volumeToMesh(grid, points, triangles, quads, iso_mm, 0.0);
+
+  TriangleMesh mesh;
+  mesh.vertices.reserve(points.size());
+  for (const auto& p : points) mesh.vertices.emplace_back(p.x(), p.y(), p.z());
+  mesh.triangles.reserve(triangles.size() + 2 * quads.size());
+  const auto add = [&](unsigned a, unsigned b, unsigned c) {
+    mesh.triangles.push_back({static_cast<int>(a), static_cast<int>(b), static_cast<int>(c)});
+  };
+  // OpenVDB winds its faces clockwise seen from the larger values: turned about here.
+  for (const auto& t : triangles) add(t[2], t[1], t[0]);
+  for (const auto& q : quads) {
+    if ((points[q[0]] - points[q[2]]).lengthSqr() <= (points[q[1]] - points[q[3]]).lengthSqr()) {
+      add(q[2], q[1], q[0]);
+      add(q[3], q[2], q[0]);
+    } else {
+      add(q[1], q[0], q[3]);
+      add(q[3], q[2], q[1]);
+    }
+  }
+  return mesh;
+}
+
+}  // namespace skinframe

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/skin/mend_edges.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <numeric>
+#include <unordered_set>
+
+namespace skinframe {
+namespace {
+
+constexpr int kMaxRounds = 12;
+constexpr double kNudge = 0.02;  // of the edge's length
+
+// One side of one triangle: the edge's ends in ascending order as a key, so that sorting brings edges
+// together.
+struct Side {
+  std::uint64_t key;
+  int triangle;
+  bool forth;  // run from the lower to the higher end
+};
+
+std::vector<Side> sorted_sides(const TriangleMesh& mesh) {
+  std::vector<Side> sides;
+  sides.reserve(3 * mesh.triangles.size());
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const auto a = static_cast<std::uint32_t>(mesh.triangles[t][k]);
+      const auto b = static_cast<std::uint32_t>(mesh.triangles[t][(k + 1) % 3]);
+      sides.push_back({(std::uint64_t{std::min(a, b)} << 32) | std::max(a, b), t, a < b});
+    }
+  }
+  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+    return x.key != y.key ? x.key < y.key : x.triangle < y.triangle;
+  });
+  return sides;
+}
+
+bool is_good(const Side* first, const Side* last) {
+  return last - first == 2 && first[0].forth != first[1].forth;
+}
+
+template <class Visit>
+void for_each_edge(const std::vector<Side>& sides, Visit visit) {
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t j = i;
+    while (j < sides.size() && sides[j].key == sides[i].key) ++j;
+    visit(sides.data() + i, sides.data() + j);
+    i = j;
+  }
+}
+
+void weld_equal_floats(TriangleMesh& mesh) {
+  for (auto& v : mesh.vertices) v = v.cast<float>().cast<double>();
+  std::vector<int> order(mesh.vertices.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto less = [&](int i, int j) {
+    const auto &a = mesh.vertices[i], &b = mesh.vertices[j];
+    if (a.x() != b.x()) return a.x() < b.x();
+    if (a.y() != b.y()) return a.y() < b.y();
+    if (a.z() != b.z()) return a.z() < b.z();
+    return i < j;
+  };
+  std::sort(order.begin(), order.end(), less);
+  std::vector<int> keeper(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && mesh.vertices[order[i]] == mesh.vertices[order[i - 1]];
+    keeper[order[i]] = same ? keeper[order[i - 1]] : order[i];
+  }
+  std::vector<int> place(order.size(), -1);
+  int used = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (keeper[i] != static_cast<int>(i)) continue;
+    place[i] = used;
+    mesh.vertices[used++] = mesh.vertices[i];
+  }
+  mesh.vertices.resize(used);
+  for (auto& t : mesh.triangles) {
+    for (int& v : t) v = place[keeper[v]];
+  }
+  std::erase_if(mesh.triangles, [](const auto& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; });
+}
+
+// Two triangles on the same three corners, wound oppositely, enclose nothing.
+void cancel_opposite_triangles(TriangleMesh& mesh) {
+  std::vector<int> order(mesh.triangles.size());
+  std::iota(order.begin(), order.end(), 0);
+  const auto sorted = [&](int i) {
+    auto t = mesh.triangles[i];
+    std::sort(t.begin(), t.end());
+    return t;
+  };
+  const auto is_even = [&](int i) {
+    const auto& t = mesh.triangles[i];
+    return (t[0] < t[1]) + (t[1] < t[2]) + (t[2] < t[0]) == 2;
+  };
+  std::sort(order.begin(), order.end(), [&](int i, int j) {
+    const auto a = sorted(i), b = sorted(j);
+    return a != b ? a < b : i < j;
+  });
+  std::vector<char> gone(mesh.triangles.size(), 0);
+  for (std::size_t i = 0; i < order.size();) {
+    std::vector<int> even, odd;
+    std::size_t j = i;
+    for (; j < order.size() && sorted(order[j]) == sorted(order[i]); ++j) {
+      (is_even(order[j]) ? even : odd).push_back(order[j]);
+    }
+    for (std::size_t k = 0; k < std::min(even.size(), odd.size()); ++k) gone[even[k]] = gone[odd[k]] = 1;
+    i = j;
+  }
+  std::size_t used = 0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (!gone[i]) mesh.triangles[used++] = mesh.triangles[i];
+  }
+  mesh.triangles.resize(used);
+}
+
+// A triangle at the edge u-v by its angle about the edge. Its outward normal points to larger angles when it
+// runs u -> v (forth), so solid lies between a `back` triangle and the `forth` one that follows it.
+struct Leaf {
+  double angle;
+  Side side;
+};
+
+std::vector<std::pair<Leaf, Leaf>> solid_wedges(std::vector<Leaf> leaves) {
+  std::sort(leaves.begin(), leaves.end(), [](const Leaf& a, const Leaf& b) {
+    return a.angle != b.angle ? a.angle < b.angle : a.side.triangle < b.side.triangle;
+  });
+  // Brackets round a circle: in two turns every `back` finds its `forth`.
+  std::vector<std::pair<Leaf, Leaf>> wedges;
+  std::vector<std::size_t> open;
+  std::vector<char> done(leaves.size(), 0);
+  for (std::size_t i = 0; i < 2 * leaves.size(); ++i) {
+    const std::size_t k = i % leaves.size();
+    if (done[k]) continue;
+    if (!leaves[k].side.forth) {
+      if (i < leaves.size()) open.push_back(k);
+    } else if (!open.empty()) {
+      wedges.emplace_back(leaves[open.back()], leaves[k]);
+      done[open.back()] = done[k] = 1;
+      open.pop_back();
+    }
+  }
+  return wedges;
+}
+
+void split_side(TriangleMesh& mesh, int triangle, int a, int b, int middle) {
+  auto& t = mesh.triangles[triangle];
+  for (int k = 0; k < 3; ++k) {
+    const int from = t[k], to = t[(k + 1) % 3], across = t[(k + 2) % 3];
+    if (std::min(from, to) != std::min(a, b) || std::max(from, to) != std::max(a, b)) continue;
+    t = {from, middle, across};
+    mesh.triangles.push_back({middle, to, across});
+    return;
+  }
+}
+
+// Divides the edge between its wedges; false when it is not run as often forth as back.
+bool part_wedges(TriangleMesh& mesh, const Side* first, const Side* last) {
+  const int u = static_cast<int>(first->key >> 32), v = static_cast<int>(first->key & 0xffffffffu);
+  const Eigen::Vector3d origin = mesh.vertices[u], edge = mesh.vertices[v] - origin;
+  const Eigen::Vector3d axis = edge.normalized();
+  const Eigen::Vector3d x = axis.unitOrthogonal(), y = axis.cross(x);
+  std::vector<Leaf> leaves;
+  for (const Side* s = first; s != last; ++s) {
+    const auto& t = mesh.triangles[s->triangle];
+    const int w = t[0] + t[1] + t[2] - u - v;
+    const Eigen::Vector3d arm = mesh.vertices[w] - origin;
+    leaves.push_back({std::atan2(arm.dot(y), arm.dot(x)), *s});
+  }
+  const auto wedges = solid_wedges(std::move(leaves));
+  if (2 * static_cast<std::ptrdiff_t>(wedges.size()) != last - first) return false;
+  for (const auto& [back, forth] : wedges) {
+    double opening = forth.angle - back.angle;
+    if (opening < 0) opening += 2.0 * std::numbers::pi;
+    const double middle_angle = back.angle + 0.5 * opening;
+    const Eigen::Vector3d inward = std::cos(middle_angle) * x + std::sin(middle_angle) * y;
+    const Eigen::Vector3d middle = origin + 0.5 * edge + kNudge * edge.norm() * inward;
+    const int index = static_cast<int>(mesh.vertices.size());
+    mesh.vertices.push_back(middle.cast<float>().cast<double>());
+    split_side(mesh, back.side.triangle, u, v, index);
+    split_side(mesh, forth.side.triangle, u, v, index);
+  }
+  return true;
+}
+
+}  // namespace
+
+int count_bad_edges(const TriangleMesh& mesh) {
+  int bad = 0;
+  for_each_edge(sorted_sides(mesh),
+                [&](const Side* first, const Side* last) { bad += !is_good(first, last); });
+  return bad;
+}
+
+EdgeMending mend_edges(TriangleMesh& mesh) {
+  EdgeMending result;
+  for (int round = 0; round < kMaxRounds; ++round) {
+    weld_equal_floats(mesh);
+    const auto sides = sorted_sides(mesh);
+    std::vector<std::pair<const Side*, const Side*>> bad;
+    for_each_edge(sides, [&](const Side* first, const Side* last) {
+      if (!is_good(first, last)) bad.emplace_back(first, last);
+    });
+    if (bad.empty()) {
+      result.manifold = true;
+      return result;
+    }
+    if (round == 0) {
+      const std::size_t before = mesh.triangles.size();
+      cancel_opposite_triangles(mesh);
+      if (mesh.triangles.size() != before) continue;
+    }
+    // A triangle is divided once a round, so that the sides found above stay true.
+    std::unordered_set<int> touched;
+    for (const auto& [first, last] : bad) {
+      if (std::any_of(first, last, [&](const Side& s) { return touched.contains(s.triangle); })) continue;
+      for (const Side* s = first; s != last; ++s) touched.insert(s->triangle);
+      if (!part_wedges(mesh, first, last)) return result;
+      ++result.edges_split;
+    }
+  }
+  return result;
+}
+
+}  // namespace skinframe
