@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/app/local_verbs.h"
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "worker/check/check.h"
+#include "worker/mesh/write_stl.h"
+#include "worker/problem/solve_frame.h"
+#include "worker/sample/make_sample.h"
+
+namespace skinframe {
+namespace {
+
+// Exit codes of the command line (README of client/).
+constexpr int kOk = 0, kClaimFails = 1, kUsage = 2, kBadInput = 3, kInternal = 5;
+
+int fail(const Error& error, int code) {
+  std::cerr << "skinframe: " << error.message << '\n';
+  return code;
+}
+
+}  // namespace
+
+LocalVerbs::LocalVerbs(CLI::App& app) {
+  sample_ = app.add_subcommand("sample", "Write one of the bodies that ship with the program as STL");
+  sample_->add_option("NAME", sample_name_, "Which; see --list");
+  sample_->add_option("--out", out_, "File to write");
+  sample_->add_flag("--list", list_samples_, "List the names");
+  sample_->add_flag("--json", json_, "List as JSON");
+  check_ = app.add_subcommand("check", "Re-read a result folder and judge every claim it makes");
+  check_->add_option("DIR", directory_, "Folder with report.json")->required();
+  check_->add_flag("--json", json_, "Verdict as JSON");
+  solve_frame_ = app.add_subcommand("solve-frame", "Optimise a given frame");
+  solve_frame_->add_option("PROBLEM", problem_, "Problem file (JSON)")->required();
+  solve_frame_->add_option("--out", out_, "Result file (JSON)")->required();
+  solve_frame_->add_flag("--json", json_, "Summary as JSON");
+}
+
+std::optional<int> LocalVerbs::run() {
+  if (sample_->parsed()) return run_sample();
+  if (check_->parsed()) return run_check();
+  if (solve_frame_->parsed()) return run_solve_frame();
+  return std::nullopt;
+}
+
+int LocalVerbs::run_sample() const {
+  if (list_samples_) {
+    nlohmann::json list = nlohmann::json::array();
+    for (const SampleInfo& info : samples()) {
+      list.push_back({{"name", info.name}, {"description", info.description}});
+      if (!json_) std::cout << info.name << std::string(28 - std::min<std::size_t>(27, info.name.size()), ' ') << info.description << '\n';
+    }
+    if (json_) std::cout << list.dump(2) << '\n';
+    return kOk;
+  }
+  if (sample_name_.empty() || out_.empty()) {
+    std::cerr << "skinframe: sample needs NAME and --out FILE; `skinframe sample --list` shows the names\n";
+    return kUsage;
+  }
+  RunContext context;
+  auto mesh = make_sample(sample_name_, context);
+  if (!mesh) return fail(mesh.error(), kUsage);
+  if (auto written = write_stl(*mesh, out_); !written) return fail(written.error(), kInternal);
+  if (json_)
+    std::cout << nlohmann::json{{"file", out_}, {"triangles", mesh->triangles.size()}}.dump() << '\n';
+  return kOk;
+}
+
+int LocalVerbs::run_check() const {
+  RunContext context;
+  auto verdicts = check::check_directory(directory_, context);
+  if (!verdicts) return fail(verdicts.error(), kBadInput);
+  std::cout << (json_ ? check::to_json_text(*verdicts) : check::to_text(*verdicts));
+  for (const check::Verdict& verdict : *verdicts)
+    if (!verdict.holds()) return kClaimFails;
+  return kOk;
+}
+
+int LocalVerbs::run_solve_frame() const { return solve_frame_main(problem_, out_, json_); }
+
+}  // namespace skinframe

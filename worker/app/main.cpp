@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// skinframe-worker: the agent that works for a server, and the verbs that run on this machine alone.
+#include <signal.h>
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "worker/agent/agent.h"
+#include "worker/app/local_verbs.h"
+#include "worker/job/run_job.h"
+
+// OpenBLAS adds in an order that depends on its threads; one thread keeps results the same on every machine.
+extern "C" __attribute__((weak)) void openblas_set_num_threads(int);
+
+int main(int argc, char** argv) {
+  using namespace skinframe;
+  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
+  spdlog::set_default_logger(spdlog::stderr_color_mt("worker"));
+  spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
+
+  CLI::App app{"Runs skin-frame jobs for a server, each in a process of its own."};
+  app.set_version_flag("--version", "skinframe-worker " SKINFRAME_VERSION);
+  app.footer(
+      "Examples:\n"
+      "  skinframe-worker --server farm:7350 --slots 2      work for that server, two jobs at a time\n"
+      "  skinframe-worker solve-frame P.json --out R.json   the optimiser alone\n"
+      "  skinframe-worker check DIR                         judge exported files; 0: every claim holds, 1: one does not\n"
+      "  skinframe-worker sample --list                     the bodies that ship with the program");
+
+  AgentOptions agent;
+  std::string work_root, tls_ca;
+  app.add_option("--server", agent.server_address, "Server to work for, HOST:PORT")->capture_default_str();
+  app.add_option("--slots", agent.slots, "Jobs at a time")->check(CLI::Range(1, 64))->capture_default_str();
+  app.add_option("--work-dir", work_root, "Folder for the files of running jobs (default: a folder under TMPDIR)");
+  app.add_option("--tls-ca", tls_ca, "PEM file of the certificate authority; turns TLS on");
+  app.add_option("--memory-limit-mb", agent.memory_limit_mb, "Address space of one job's process; 0: no limit")
+      ->check(CLI::NonNegativeNumber)->capture_default_str();
+  app.add_option("--threads", agent.threads_per_job, "Threads of one job")->check(CLI::Range(1, 256))->capture_default_str();
+  app.add_option("--name", agent.worker_name, "Name shown to people (default: host and process)");
+
+  std::string job_dir;
+  CLI::App* job = app.add_subcommand("run-job", "One job in this process; the agent calls it");
+  job->add_option("WORKDIR", job_dir, "Folder with job.json")->required();
+  LocalVerbs local(app);
+
+  CLI11_PARSE_OR_USAGE(app, argc, argv);
+
+  if (job->parsed()) return run_job(job_dir);
+  if (const auto code = local.run()) return *code;
+  agent.work_root = work_root;
+  agent.tls_root_cert = tls_ca;
+  if (auto valid = agent.validate(); !valid) {
+    std::cerr << "skinframe-worker: " << valid.error().message << '\n';
+    return 2;
+  }
+  return run_agent(agent);
+}

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The claims, by what they are about. Each function adds its claims to the verdict; tolerances stand beside the claim.
+#pragma once
+
+#include "worker/check/claim.h"
+#include "worker/check/exported.h"
+#include "worker/check/surface.h"
+
+namespace skinframe::check {
+
+// The merged mesh's first triangles are M's own, as the report counts them; the rest bounds the cavity.
+void split_surfaces(const ExportedPrinter& result, TriangleMesh* outer, TriangleMesh* cavity);
+
+// Watertight, volumes, weight, skin thickness, tray.
+void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, const TriangleMesh& cavity,
+                const Surface& outer, Verdict* verdict);
+
+// Radii (9, 10), slenderness (4, 5), triangulation, counts and nominal volumes (12), struts inside M (7).
+void claim_frame(const ExportedPrinter& result, const Surface* outer, Verdict* verdict);
+
+// Equilibrium (1), stresses (2, 3), displacement (6): assembled and solved anew, in the paper's model.
+void claim_mechanics(const ExportedPrinter& result, Verdict* verdict);
+
+// Balance (8): of the nominal model, and of the printed mesh itself.
+void claim_balance(const ExportedPrinter& result, const TriangleMesh& outer_mesh, Verdict* verdict);
+
+}  // namespace skinframe::check

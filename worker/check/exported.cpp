@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/check/exported.h"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "worker/mesh/read_mesh.h"
+
+namespace skinframe::check {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uintmax_t kMaxJsonBytes = std::uintmax_t{1} << 30;
+
+Result<json> read_json(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) return io_error(fmt::format("{}: {}", path.string(), error.message()));
+  if (size > kMaxJsonBytes) return invalid_input(fmt::format("{}: {} bytes are too many", path.string(), size));
+  std::ifstream in(path);
+  json document = json::parse(in, nullptr, false);
+  if (document.is_discarded()) return invalid_input(fmt::format("{}: not JSON", path.string()));
+  return document;
+}
+
+Eigen::Vector3d vector3(const json& value) {
+  return {value.at(0).get<double>(), value.at(1).get<double>(), value.at(2).get<double>()};
+}
+
+std::optional<double> optional_number(const json& object, const char* key) {
+  const auto it = object.find(key);
+  if (it == object.end() || it->is_null()) return std::nullopt;
+  return it->get<double>();
+}
+
+// Throws std::out_of_range with the place of an index that names nothing.
+int node_index(const json& value, std::size_t count, const std::string& place) {
+  const auto index = value.get<long long>();
+  if (index < 0 || static_cast<std::size_t>(index) >= count)
+    throw std::out_of_range(fmt::format("{}: {} is not a node (0..{})", place, index, count - 1));
+  return static_cast<int>(index);
+}
+
+ExportedFrame parse_frame(const json& file) {
+  ExportedFrame frame;
+  const json& material = file.at("material");
+  frame.tensile_modulus_mpa = material.at("tensile_modulus_mpa").get<double>();
+  frame.shear_modulus_mpa = material.at("shear_modulus_mpa").get<double>();
+  frame.density_g_cm3 = material.at("density_g_cm3").get<double>();
+  frame.tensile_strength_mpa = optional_number(material, "tensile_strength_mpa");
+  frame.shear_strength_mpa = optional_number(material, "shear_strength_mpa");
+  frame.slenderness = optional_number(material, "slenderness");
+  frame.displacement_limit_mm = optional_number(file, "displacement_limit_mm");
+
+  for (const json& node : file.at("nodes")) frame.nodes_mm.push_back(vector3(node));
+  const std::size_t n = frame.nodes_mm.size();
+  for (const json& item : file.at("struts")) {
+    const std::string place = fmt::format("struts[{}]", frame.struts.size());
+    ExportedStrut strut;
+    strut.a = node_index(item.at("a"), n, place + ".a");
+    strut.b = node_index(item.at("b"), n, place + ".b");
+    strut.skin = item.at("skin").get<bool>();
+    strut.radius_mm = item.at("radius_mm").get<double>();
+    strut.min_radius_mm = item.at("min_radius_mm").get<double>();
+    strut.max_radius_mm = item.at("max_radius_mm").get<double>();
+    frame.struts.push_back(strut);
+  }
+  for (const json& item : file.at("skin_triangles")) {
+    const std::string place = fmt::format("skin_triangles[{}]", frame.skin_triangles.size());
+    frame.skin_triangles.push_back(
+        {node_index(item.at(0), n, place), node_index(item.at(1), n, place), node_index(item.at(2), n, place)});
+  }
+  frame.fixed.assign(n, {false, false, false});
+  for (const json& item : file.at("fixed")) {
+    const int node = node_index(item.at("node"), n, "fixed.node");
+    for (const char axis : item.at("axes").get<std::string>())
+      if (axis >= 'x' && axis <= 'z') frame.fixed[node][axis - 'x'] = true;
+  }
+  frame.skin_weight_n.assign(n, 0.0);
+  if (file.contains("skin_weight_n"))
+    for (std::size_t i = 0; i < n; ++i) frame.skin_weight_n[i] = file.at("skin_weight_n").at(i).get<double>();
+  if (file.contains("skin_mass")) {
+    frame.skin_mass_weight_n = file.at("skin_mass").at("weight_n").get<double>();
+    frame.skin_centroid_mm = vector3(file.at("skin_mass").at("centroid_mm"));
+  }
+  for (const json& item : file.at("load_cases")) {
+    ExportedLoadCase load_case;
+    load_case.name = item.at("name").get<std::string>();
+    load_case.gravity = item.at("gravity").get<bool>();
+    load_case.force_n.assign(n, Eigen::Vector3d::Zero());
+    for (const json& force : item.at("forces"))
+      load_case.force_n[node_index(force.at("node"), n, "forces.node")] += vector3(force.at("force_n"));
+    if (item.contains("displacements_mm"))
+      for (const json& displacement : item.at("displacements_mm"))
+        load_case.displacement_mm.push_back(vector3(displacement));
+    frame.load_cases.push_back(std::move(load_case));
+  }
+  return frame;
+}
+
+ExportedPrinter parse_printer(const json& item) {
+  ExportedPrinter out;
+  out.printer = item.at("printer").get<std::string>();
+  out.material = item.at("material").get<std::string>();
+  out.termination = item.at("termination").at("reason").get<std::string>();
+  const json& profile = item.at("profile");
+  out.eta_mm = profile.at("min_radius_mm").get<double>();
+  out.skin_thickness_mm = profile.at("skin_thickness_mm").get<double>();
+  out.max_internal_radius_mm = profile.at("max_internal_radius_mm").get<double>();
+  out.density_g_cm3 = profile.at("density_g_cm3").get<double>();
+  out.tray_mm = vector3(profile.at("tray_mm"));
+  out.best_reachable_displacement_mm = optional_number(item, "best_reachable_displacement_mm");
+  out.solid_volume_mm3 = item.at("solid_volume_mm3").get<double>();
+  out.skin_volume_mm3 = item.at("skin_volume_mm3").get<double>();
+  out.frame_volume_mm3 = item.at("frame_volume_mm3").get<double>();
+  out.total_volume_mm3 = item.at("total_volume_mm3").get<double>();
+  out.ratio = item.at("ratio").get<double>();
+  out.size_volume_mm3 = item.at("size_volume_mm3").get<double>();
+  out.topology_volume_mm3 = item.at("topology_volume_mm3").get<double>();
+  out.geometry_volume_mm3 = item.at("geometry_volume_mm3").get<double>();
+  out.max_displacement_mm = item.at("max_displacement_mm").get<double>();
+  out.max_axial_ratio = item.at("max_axial_ratio").get<double>();
+  out.max_shear_ratio = item.at("max_shear_ratio").get<double>();
+  out.min_radius_mm = item.at("min_radius_mm").get<double>();
+  out.balance = item.at("balance").get<std::string>();
+  out.balance_margin_mm = optional_number(item, "balance_margin_mm");
+  out.lower_bound_mm3 = optional_number(item, "lower_bound_mm3");
+  out.final_nodes = item.at("counts").at("geometry").at("nodes").get<int>();
+  out.final_struts = item.at("counts").at("geometry").at("struts").get<int>();
+  if (!out.infeasible()) {
+    out.printed_volume_mm3 = item.at("printed_volume_mm3").get<double>();
+    out.printed_ratio = item.at("printed_ratio").get<double>();
+    out.weight_g = item.at("weight_g").get<double>();
+    out.voxel_mm = item.at("voxel_mm").get<double>();
+  }
+  return out;
+}
+
+}  // namespace
+
+TriangleMesh weld_equal(const TriangleMesh& soup) {
+  TriangleMesh welded;
+  std::map<std::array<double, 3>, int> index_of;
+  std::vector<int> renamed(soup.vertices.size());
+  for (std::size_t i = 0; i < soup.vertices.size(); ++i) {
+    const Eigen::Vector3d& v = soup.vertices[i];
+    const auto [it, fresh] = index_of.try_emplace({v.x(), v.y(), v.z()}, static_cast<int>(welded.vertices.size()));
+    if (fresh) welded.vertices.push_back(v);
+    renamed[i] = it->second;
+  }
+  welded.triangles.reserve(soup.triangles.size());
+  for (const auto& t : soup.triangles) welded.triangles.push_back({renamed[t[0]], renamed[t[1]], renamed[t[2]]});
+  return welded;
+}
+
+Result<std::vector<ExportedPrinter>> read_exported(const std::filesystem::path& directory, RunContext& context) {
+  const auto report_path = directory / "report.json";
+  auto report = read_json(report_path);
+  if (!report) return report.error();
+  std::vector<ExportedPrinter> printers;
+  std::filesystem::path reading = report_path;
+  try {
+    for (const json& item : report->at("printers")) {
+      reading = report_path;
+      // A printer that was refused before it had a frame (does not fit, for example) claims nothing.
+      if (!item.contains("termination")) continue;
+      ExportedPrinter printer = parse_printer(item);
+      printer.solid_triangles = report->at("mesh").at("triangles").get<std::size_t>();
+      const auto folder = directory / printer.printer;
+      reading = folder / "frame.json";
+      auto frame = read_json(reading);
+      if (!frame) return frame.error();
+      printer.frame = parse_frame(*frame);
+      if (!printer.infeasible()) {
+        auto merged = read_mesh(folder / "skin-frame.stl", ReadLimits{}, context);
+        if (!merged) return merged.error();
+        printer.merged = weld_equal(merged->mesh);
+      }
+      printers.push_back(std::move(printer));
+    }
+  } catch (const std::exception& error) {
+    return invalid_input(fmt::format("{}: {}", reading.string(), error.what()));
+  }
+  if (printers.empty())
+    return invalid_input(fmt::format("{}: no printer in it has a result to check", report_path.string()));
+  return printers;
+}
+
+}  // namespace skinframe::check

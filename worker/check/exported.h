@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a result folder holds, read back from its files alone: report.json, and for each printer frame.json and
+// skin-frame.stl. Only the mesh reader is shared with the code that wrote them. Units as in the files: mm, N, MPa.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "worker/mesh/triangle_mesh.h"
+#include "worker/run/run_context.h"
+
+namespace skinframe::check {
+
+struct ExportedStrut {
+  int a = 0, b = 0;
+  bool skin = false;
+  double radius_mm = 0, min_radius_mm = 0, max_radius_mm = 0;
+};
+
+struct ExportedLoadCase {
+  std::string name;
+  bool gravity = true;
+  std::vector<Eigen::Vector3d> force_n;          // one a node
+  std::vector<Eigen::Vector3d> displacement_mm;  // one a node; empty when the file has none
+};
+
+struct ExportedFrame {
+  double tensile_modulus_mpa = 0, shear_modulus_mpa = 0, density_g_cm3 = 0;
+  std::optional<double> tensile_strength_mpa, shear_strength_mpa, slenderness, displacement_limit_mm;
+  std::vector<Eigen::Vector3d> nodes_mm;
+  std::vector<ExportedStrut> struts;
+  std::vector<std::array<int, 3>> skin_triangles;
+  std::vector<std::array<bool, 3>> fixed;
+  std::vector<double> skin_weight_n;
+  std::vector<ExportedLoadCase> load_cases;
+  double skin_mass_weight_n = 0;
+  Eigen::Vector3d skin_centroid_mm = Eigen::Vector3d::Zero();
+};
+
+struct ExportedPrinter {
+  std::string printer, material;
+  std::string termination;  // "OPTIMAL", "INFEASIBLE", ...
+  double solid_volume_mm3 = 0, skin_volume_mm3 = 0, frame_volume_mm3 = 0, total_volume_mm3 = 0, ratio = 0;
+  double printed_volume_mm3 = 0, printed_ratio = 0, weight_g = 0;
+  double size_volume_mm3 = 0, topology_volume_mm3 = 0, geometry_volume_mm3 = 0;
+  double max_displacement_mm = 0, max_axial_ratio = 0, max_shear_ratio = 0, min_radius_mm = 0;
+  std::optional<double> balance_margin_mm, lower_bound_mm3, best_reachable_displacement_mm;
+  std::string balance;
+  int final_nodes = 0, final_struts = 0;
+  // profile
+  double eta_mm = 0, skin_thickness_mm = 0, max_internal_radius_mm = 0, voxel_mm = 0;
+  double density_g_cm3 = 0;
+  Eigen::Vector3d tray_mm = Eigen::Vector3d::Zero();
+  std::size_t solid_triangles = 0;
+  ExportedFrame frame;
+  std::optional<TriangleMesh> merged;  // vertices welded where equal; absent where the result has no mesh
+  bool optimised() const { return termination != "NOT_OPTIMIZED"; }
+  bool infeasible() const { return termination == "INFEASIBLE"; }
+};
+
+// Errors: kIo and kInvalidInput, naming file and field.
+Result<std::vector<ExportedPrinter>> read_exported(const std::filesystem::path& directory, RunContext& context);
+
+// Vertices at exactly the same place become one.
+TriangleMesh weld_equal(const TriangleMesh& soup);
+
+}  // namespace skinframe::check

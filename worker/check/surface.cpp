@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/check/surface.h"
+
+#include <CGAL/AABB_face_graph_triangle_primitive.h>
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Side_of_triangle_mesh.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+
+#include <cmath>
+#include <optional>
+
+namespace skinframe::check {
+namespace {
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Mesh = CGAL::Surface_mesh<Kernel::Point_3>;
+using Primitive = CGAL::AABB_face_graph_triangle_primitive<Mesh>;
+using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+}  // namespace
+
+struct Surface::Impl {
+  Mesh mesh;
+  Tree tree;
+  std::optional<CGAL::Side_of_triangle_mesh<Mesh, Kernel>> side;
+};
+
+Surface::Surface(const TriangleMesh& closed_mesh) : impl_(std::make_unique<Impl>()) {
+  Mesh& mesh = impl_->mesh;
+  std::vector<Kernel::Point_3> points;
+  for (const auto& v : closed_mesh.vertices) points.emplace_back(v.x(), v.y(), v.z());
+  // Vertices where the surface touches itself are split, so that the soup always makes a mesh.
+  std::vector<std::array<int, 3>> triangles = closed_mesh.triangles;
+  CGAL::Polygon_mesh_processing::polygon_soup_to_polygon_mesh(points, triangles, mesh);
+  impl_->tree.insert(faces(mesh).begin(), faces(mesh).end(), mesh);
+  impl_->tree.build();
+  impl_->tree.accelerate_distance_queries();
+  impl_->side.emplace(impl_->tree);
+}
+
+Surface::~Surface() = default;
+Surface::Surface(Surface&&) noexcept = default;
+
+double Surface::distance_mm(const Eigen::Vector3d& p) const {
+  return std::sqrt(impl_->tree.squared_distance(Kernel::Point_3(p.x(), p.y(), p.z())));
+}
+
+double Surface::depth_mm(const Eigen::Vector3d& p) const {
+  const double distance = distance_mm(p);
+  return (*impl_->side)(Kernel::Point_3(p.x(), p.y(), p.z())) == CGAL::ON_UNBOUNDED_SIDE ? -distance : distance;
+}
+
+}  // namespace skinframe::check

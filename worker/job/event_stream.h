@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The job's side of the pipe: one JSON object a line, as README.md of this folder gives it. Ticks are thinned to one
+// every kTickSeconds; a change of stage, and everything that is not a tick, goes at once. A beat repeats the last tick
+// while a stage is silent, so that a line comes at least every 500 ms.
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "worker/pipeline/pipeline.h"
+
+namespace skinframe {
+
+inline constexpr double kTickSeconds = 0.2;
+inline constexpr double kBeatSeconds = 0.4;
+
+nlohmann::json progress_json(const PipelineProgress& progress, std::optional<double> seconds_left);
+nlohmann::json outcome_json(const PrinterOutcome& outcome);
+
+class EventStream {
+ public:
+  explicit EventStream(std::FILE* out);
+  ~EventStream();  // stops the beat; writes nothing more
+
+  void progress(const PipelineProgress& progress);
+  void printer_ended(const PrinterOutcome& outcome);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void write_line(const nlohmann::json& line);  // mutex_ held
+  void beat(std::stop_token stop);
+
+  std::FILE* out_;
+  std::mutex mutex_;
+  std::condition_variable_any wake_;
+  std::optional<PipelineProgress> last_;
+  Clock::time_point last_written_ = Clock::now();
+  Clock::time_point started_ = Clock::now();
+  std::jthread beat_;
+};
+
+}  // namespace skinframe

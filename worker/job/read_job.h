@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// job.json, as README.md of this folder gives it, to the request of the pipeline.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "worker/pipeline/request.h"
+#include "worker/run/result.h"
+
+namespace skinframe {
+
+struct JobFile {
+  JobRequest request;
+  int threads = 1;
+};
+
+// Errors name the field. kUnsupported for what this version refuses by name (smooth on, orient best).
+Result<JobFile> parse_job(const nlohmann::json& document);
+Result<JobFile> read_job(const std::filesystem::path& path);
+
+}  // namespace skinframe

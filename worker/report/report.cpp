@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/report/report.h"
+
+#include "worker/mechanics/equilibrium.h"
+
+namespace skinframe {
+namespace {
+
+using nlohmann::json;
+
+json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+json stage_json(const StageRecord& stage) { return {{"nodes", stage.nodes}, {"struts", stage.struts}}; }
+
+// Where the plate would have to pull: the object counts as clamped, and a real plate may let go there.
+json tips_json(const OptimizeResult& result) {
+  constexpr double kSilentN = 1e-6;
+  json tips = json::array();
+  const auto responses = solve_equilibrium(result.problem, areas_of(result.radii_mm));
+  for (std::size_t c = 0; c < responses.size(); ++c) {
+    double pull_n = 0;
+    int nodes = 0;
+    for (const Eigen::Vector3d& reaction : responses[c].reactions_n)
+      if (reaction.z() < -kSilentN) {
+        pull_n -= reaction.z();
+        ++nodes;
+      }
+    if (nodes > 0)
+      tips.push_back({{"load_case", result.problem.load_cases[c].name}, {"pull_n", pull_n}, {"nodes", nodes}});
+  }
+  return tips;
+}
+
+}  // namespace
+
+const char* to_string(Reason reason) {
+  switch (reason) {
+    case Reason::kNone: return "NONE";
+    case Reason::kPartial: return "PARTIAL";
+    case Reason::kInvalidInput: return "INVALID_INPUT";
+    case Reason::kDoesNotFit: return "DOES_NOT_FIT";
+    case Reason::kInfeasible: return "INFEASIBLE";
+    case Reason::kOutOfMemory: return "OUT_OF_MEMORY";
+    case Reason::kInternal: return "INTERNAL";
+    case Reason::kCancelled: return "CANCELLED";
+    case Reason::kUnsupported: return "UNSUPPORTED";
+  }
+  return "INTERNAL";
+}
+
+Reason reason_of(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::kInvalidInput: return Reason::kInvalidInput;
+    case ErrorKind::kDoesNotFit: return Reason::kDoesNotFit;
+    case ErrorKind::kUnsupported: return Reason::kUnsupported;
+    case ErrorKind::kIo: return Reason::kInternal;
+    case ErrorKind::kCancelled: return Reason::kCancelled;
+    case ErrorKind::kInternal: return Reason::kInternal;
+  }
+  return Reason::kInternal;
+}
+
+json mesh_json(const MeshFacts& facts, const Solid& solid, const Contact& contact) {
+  return {{"name", facts.name},
+          {"format", facts.format},
+          {"vertices", solid.mesh().vertices.size()},
+          {"triangles", solid.mesh().triangles.size()},
+          {"size_mm", vector_json(solid.box().extent())},
+          {"volume_mm3", solid.volume_mm3()},
+          {"area_mm2", solid.area_mm2()},
+          {"stands", contact.stands},
+          {"standing_margin_mm", contact.margin_mm},
+          {"repairs", facts.repairs},
+          {"warnings", facts.warnings}};
+}
+
+json to_json(const Statistics& s) {
+  return {{"solid_volume_mm3", s.solid_volume_mm3},
+          {"skin_volume_mm3", s.skin_volume_mm3},
+          {"frame_volume_mm3", s.frame_volume_mm3},
+          {"total_volume_mm3", s.total_volume_mm3},
+          {"ratio", s.ratio},
+          {"printed_volume_mm3", s.printed_volume_mm3},
+          {"printed_ratio", s.printed_ratio},
+          {"weight_g", s.weight_g},
+          {"skin_nodes", s.skin_nodes},
+          {"nodes", s.nodes},
+          {"struts", s.struts},
+          {"max_displacement_mm", s.max_displacement_mm},
+          {"balance", s.balance}};
+}
+
+json refused_json(const PrinterReport& report) {
+  return {{"printer", report.printer},
+          {"material", report.material},
+          {"reason", to_string(report.reason)},
+          {"detail", report.detail},
+          {"warnings", report.warnings}};
+}
+
+json to_json(const PrinterReport& report) {
+  if (!report.optimised) return refused_json(report);
+  const OptimizeResult& result = *report.optimised;
+  const Statistics& s = report.statistics;
+  json out = {
+      {"printer", report.printer},
+      {"material", report.material},
+      {"reason", to_string(report.reason)},
+      {"detail", report.detail},
+      {"model", "paper (axial and shear springs, no rotations)"},
+      {"profile",
+       {{"min_radius_mm", report.min_radius_mm},
+        {"skin_thickness_mm", report.skin_thickness_mm},
+        {"max_internal_radius_mm", report.max_internal_radius_mm},
+        {"tray_mm", vector_json(report.tray_mm)},
+        {"density_g_cm3", report.density_g_cm3}}},
+      {"solid_volume_mm3", s.solid_volume_mm3},
+      {"skin_volume_mm3", s.skin_volume_mm3},
+      {"frame_volume_mm3", s.frame_volume_mm3},
+      {"total_volume_mm3", s.total_volume_mm3},
+      {"ratio", s.ratio},
+      {"counts",
+       {{"initial", stage_json(result.initial)},
+        {"size", stage_json(result.size)},
+        {"topology", stage_json(result.topology)},
+        {"geometry", stage_json(result.geometry)}}},
+      {"size_volume_mm3", result.size.volume_mm3},
+      {"topology_volume_mm3", result.topology.volume_mm3},
+      {"geometry_volume_mm3", result.geometry.volume_mm3},
+      {"iterations", {{"outer", result.outer_iterations}, {"interior_point", result.interior_point_iterations}}},
+      {"max_displacement_mm", result.evaluation.max_displacement_mm},
+      {"max_axial_ratio", result.evaluation.max_axial_ratio},
+      {"max_shear_ratio", result.evaluation.max_shear_ratio},
+      {"min_radius_mm", result.evaluation.min_radius_mm},
+      {"balance", s.balance},
+      {"tips", tips_json(result)},
+      {"warnings", report.warnings},
+      {"seconds", report.seconds},
+      {"termination", {{"reason", report.termination}, {"detail", report.termination_detail}}}};
+  if (s.balance_margin_mm) out["balance_margin_mm"] = *s.balance_margin_mm;
+  if (result.lower_bound_mm3) out["lower_bound_mm3"] = *result.lower_bound_mm3;
+  if (result.best_reachable_displacement_mm)
+    out["best_reachable_displacement_mm"] = *result.best_reachable_displacement_mm;
+  if (!result.violated_constraint.empty()) out["violated_constraint"] = result.violated_constraint;
+  if (report.voxel_mm) {
+    out["voxel_mm"] = *report.voxel_mm;
+    out["printed_volume_mm3"] = s.printed_volume_mm3;
+    out["printed_ratio"] = s.printed_ratio;
+    out["weight_g"] = s.weight_g;
+    if (report.price_per_kg) out["cost"] = *report.price_per_kg * s.weight_g * 1e-3;
+  }
+  return out;
+}
+
+}  // namespace skinframe

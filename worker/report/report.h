@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// report.json: what a job tells its user, one object a printer. Nominal figures (the paper's: sum of pi r^2 l plus skin)
+// and those of the exported mesh stand apart; figures of the paper's mechanical model are named so in "model".
+// A field is there when its value is known; nothing is guessed.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "worker/export/printable.h"
+#include "worker/frame/sample_frame.h"
+#include "worker/optimize/optimize_frame.h"
+#include "worker/skin/build_skin.h"
+#include "worker/solid/contact.h"
+#include "worker/solid/solid.h"
+
+namespace skinframe {
+
+// Why a printer's part ended as it did; names of the wire by to_string().
+enum class Reason {
+  kNone,
+  kPartial,
+  kInvalidInput,
+  kDoesNotFit,
+  kInfeasible,
+  kOutOfMemory,
+  kInternal,
+  kCancelled,
+  kUnsupported,
+};
+const char* to_string(Reason reason);  // "NONE", "PARTIAL", "INVALID_INPUT", ...
+Reason reason_of(ErrorKind kind);
+
+struct MeshFacts {
+  std::string name, format;
+  std::vector<std::string> repairs, warnings;
+};
+// The "mesh" object, of the placed and repaired solid.
+nlohmann::json mesh_json(const MeshFacts& facts, const Solid& solid, const Contact& contact);
+
+// Nominal and printed figures of one printer: the row of the paper's Table 2, and the statistics of the wire.
+struct Statistics {
+  double solid_volume_mm3 = 0, skin_volume_mm3 = 0, frame_volume_mm3 = 0, total_volume_mm3 = 0, ratio = 0;
+  double printed_volume_mm3 = 0, printed_ratio = 0, weight_g = 0;
+  int skin_nodes = 0, nodes = 0, struts = 0;
+  double max_displacement_mm = 0;
+  std::string balance;                       // "holds", "not_standing", "off", "not_claimed"
+  std::optional<double> balance_margin_mm;   // of the nominal centre of gravity inside the base contact
+};
+nlohmann::json to_json(const Statistics& statistics);
+
+// Everything that is known when one printer's part ends, by result or by a bound that cannot be kept.
+struct PrinterReport {
+  std::string printer, material;
+  double min_radius_mm = 0, skin_thickness_mm = 0, max_internal_radius_mm = 0, density_g_cm3 = 0;
+  Eigen::Vector3d tray_mm = Eigen::Vector3d::Zero();
+  std::optional<double> price_per_kg;
+  Reason reason = Reason::kNone;
+  std::string detail;
+  Statistics statistics;
+  std::string termination;  // "OPTIMAL", "ITERATION_LIMIT", "NOT_OPTIMIZED", "INFEASIBLE", ...
+  std::string termination_detail;
+  std::optional<OptimizeResult> optimised;
+  std::optional<double> voxel_mm;  // of the exported mesh
+  std::vector<std::string> warnings;
+  std::map<std::string, double> seconds;
+};
+nlohmann::json to_json(const PrinterReport& report);
+
+// A refused printer has a reason and nothing to measure.
+nlohmann::json refused_json(const PrinterReport& report);
+
+}  // namespace skinframe
