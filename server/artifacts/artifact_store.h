@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files named by the SHA-256 of their content.
+//
+//   DIR/complete/ab/abcdef...   whole, hashed and durable; never written again
+//   DIR/partial/abcdef...       an upload under way or interrupted; continued from its end
+//
+// Guarantees: a name under complete/ appears only by a rename after its content was hashed and synced, so what is
+// there after a power cut is whole. One upload of a content at a time. A partial file that a power cut damaged
+// costs a repetition (its hash is wrong, nothing is kept), never a wrong artifact.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <string_view>
+#include <unordered_set>
+
+#include "absl/status/statusor.h"
+#include "server/artifacts/file.h"
+
+namespace skinframe::server {
+
+struct ArtifactLimits {
+  std::int64_t largest_bytes = std::int64_t{2} << 30;
+  std::int64_t largest_chunk_bytes = std::int64_t{1} << 20;
+};
+
+struct ArtifactFacts {
+  bool complete = false;
+  std::int64_t size_bytes = 0;     // of the complete artifact
+  std::int64_t resume_offset = 0;  // of an interrupted upload
+};
+
+class Upload;
+
+class ArtifactStore {
+ public:
+  static absl::StatusOr<std::unique_ptr<ArtifactStore>> open(const std::filesystem::path& folder,
+                                                             const ArtifactLimits& limits);
+
+  // INVALID_ARGUMENT: not a SHA-256.
+  absl::StatusOr<ArtifactFacts> stat(std::string_view sha256) const;
+
+  // Begins or continues. Null: the artifact is complete already. INVALID_ARGUMENT: name or size. ABORTED: another
+  // upload of it is under way. FAILED_PRECONDITION: offset is neither 0 nor the end of the kept part.
+  absl::StatusOr<std::unique_ptr<Upload>> upload(const std::string& sha256, std::int64_t size_bytes,
+                                                 std::int64_t offset);
+
+  // NOT_FOUND: not complete.
+  absl::StatusOr<File> read(std::string_view sha256) const;
+
+  const ArtifactLimits& limits() const { return limits_; }
+
+ private:
+  friend class Upload;
+  ArtifactStore(std::filesystem::path folder, const ArtifactLimits& limits);
+  std::filesystem::path complete_path(std::string_view sha256) const;
+  std::filesystem::path partial_path(std::string_view sha256) const;
+  void release(const std::string& sha256);
+
+  const std::filesystem::path folder_;
+  const ArtifactLimits limits_;
+  std::mutex mutex_;
+  std::unordered_set<std::string> uploading_;
+};
+
+// 64 lower-case hexadecimal digits.
+bool is_sha256(std::string_view text);
+
+}  // namespace skinframe::server

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where jobs and their events live. The store decides nothing: it runs the caller's decision inside a transaction
+// and makes record and events durable together.
+//
+// Guarantees of every implementation, checked by one conformance suite:
+//   1. A write that returned OK is durable; one that returned an error left nothing behind.
+//   2. A decision sees the job as it stands, and nothing changes the job between that look and its change.
+//   3. A job's events are numbered 1, 2, 3 ... without a gap, in the order of their commits.
+//   4. After a commit, and before the write returns, the listener is told.
+//   5. Fencing tokens rise over all jobs, and none is given twice, whatever was deleted or restarted.
+// All calls block; all may be made from any thread. Errors beside those named: UNAVAILABLE (busy, stopping),
+// RESOURCE_EXHAUSTED (disk full), INTERNAL (damaged).
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/jobs/job_record.h"
+
+namespace skinframe::server {
+
+// Told on the committing thread: must be quick, and must not call the store.
+class CommitListener {
+ public:
+  virtual ~CommitListener() = default;
+  virtual void committed(const JobRecord& record, bool state_changed) = 0;
+  virtual void removed(const std::string& job_id) = 0;
+};
+
+struct Created {
+  JobRecord record;
+  bool existed = false;  // the request id was known with the same spec digest; nothing was written
+};
+
+struct ListQuery {
+  std::vector<v1::JobState> states;           // empty: all
+  std::map<std::string, std::string> labels;  // all must match
+  int limit = 50;
+  std::int64_t before_ordinal = 0;  // from a page before; 0: from the newest
+};
+
+struct ListPage {
+  struct Entry {
+    v1::Job job;
+    std::int64_t ordinal;  // of submission: where the next page begins
+  };
+  std::vector<Entry> entries;  // newest first
+  bool more = false;
+};
+
+// The change to make, nothing, or a refusal, which becomes the call's own status.
+using Decide = std::function<absl::StatusOr<std::optional<Change>>(const JobRecord&)>;
+using DecideLease = std::function<Change(const JobRecord&, std::int64_t fencing_token)>;
+using Permit = std::function<absl::Status(const JobRecord&)>;
+
+class JobStore {
+ public:
+  virtual ~JobStore() = default;
+
+  // ALREADY_EXISTS: the request id is known with another digest. RESOURCE_EXHAUSTED: queue_limit jobs are queued.
+  virtual absl::StatusOr<Created> create(const Change& job, std::int64_t queue_limit) = 0;
+
+  // Runs decide on the job and makes its change durable; returns the job as it then stands. NOT_FOUND.
+  virtual absl::StatusOr<JobRecord> modify(const std::string& job_id, const Decide& decide) = 0;
+
+  // Runs decide on the first queued job with not_before <= now: highest priority, then oldest. Nothing: no such job.
+  virtual absl::StatusOr<std::optional<JobRecord>> lease_next(Time now, const DecideLease& decide) = 0;
+
+  // Forgets job, labels and events when permit says OK. NOT_FOUND.
+  virtual absl::Status remove(const std::string& job_id, const Permit& permit) = 0;
+
+  // NOT_FOUND.
+  virtual absl::StatusOr<JobRecord> get(const std::string& job_id) = 0;
+  virtual absl::StatusOr<ListPage> list(const ListQuery& query) = 0;
+
+  // At most limit events after a sequence number, in order. NOT_FOUND.
+  virtual absl::StatusOr<std::vector<v1::JobEvent>> events(const std::string& job_id, std::int64_t after_sequence,
+                                                           int limit) = 0;
+
+  // Queued jobs that stand before this queued one. NOT_FOUND.
+  virtual absl::StatusOr<std::int64_t> queued_before(const std::string& job_id) = 0;
+
+  // Ids of running jobs whose lease ended at or before now; of queued jobs whose deadline passed. Oldest first.
+  virtual absl::StatusOr<std::vector<std::string>> expired_leases(Time now, int limit) = 0;
+  virtual absl::StatusOr<std::vector<std::string>> passed_deadlines(Time now, int limit) = 0;
+};
+
+}  // namespace skinframe::server

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/store/sqlite_migrations.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+
+namespace skinframe::server {
+namespace {
+
+// Times are milliseconds since 1970. State numbers are those of v1::JobState: 1 queued, 2 running.
+constexpr char kJobsAndEvents[] = R"sql(
+CREATE TABLE jobs (
+  ordinal           INTEGER PRIMARY KEY AUTOINCREMENT,  -- order of submission, never used again
+  job_id            TEXT    NOT NULL UNIQUE,
+  request_id        TEXT    UNIQUE,                     -- NULL: the client gave none
+  spec_digest       TEXT    NOT NULL,
+  spec              BLOB    NOT NULL,                   -- v1.JobSpec
+  profiles          BLOB    NOT NULL,                   -- v1.Assignment with printers and materials alone
+  priority          INTEGER NOT NULL,
+  create_ms         INTEGER NOT NULL,
+  deadline_ms       INTEGER,
+  state             INTEGER NOT NULL,
+  reason            INTEGER NOT NULL,
+  detail            TEXT    NOT NULL,
+  results           BLOB    NOT NULL,                   -- v1.Job with printers and files alone
+  start_ms          INTEGER,
+  end_ms            INTEGER,
+  attempt           INTEGER NOT NULL,
+  lost_attempts     INTEGER NOT NULL,
+  not_before_ms     INTEGER NOT NULL,
+  cancel_requested  INTEGER NOT NULL,
+  last_sequence     INTEGER NOT NULL,
+  fencing_token     INTEGER NOT NULL,
+  worker_id         TEXT    NOT NULL,
+  instance_id       TEXT    NOT NULL,
+  lease_expires_ms  INTEGER NOT NULL,
+  completion_digest TEXT    NOT NULL
+) STRICT;
+CREATE INDEX jobs_queue    ON jobs (priority DESC, ordinal) WHERE state = 1;
+CREATE INDEX jobs_deadline ON jobs (deadline_ms) WHERE state = 1 AND deadline_ms IS NOT NULL;
+CREATE INDEX jobs_lease    ON jobs (lease_expires_ms) WHERE state = 2;
+CREATE INDEX jobs_state    ON jobs (state, ordinal);
+
+CREATE TABLE labels (
+  ordinal INTEGER NOT NULL REFERENCES jobs (ordinal) ON DELETE CASCADE,
+  key     TEXT    NOT NULL,
+  value   TEXT    NOT NULL,
+  PRIMARY KEY (ordinal, key)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX labels_value ON labels (key, value, ordinal);
+
+CREATE TABLE events (
+  ordinal  INTEGER NOT NULL REFERENCES jobs (ordinal) ON DELETE CASCADE,
+  sequence INTEGER NOT NULL,
+  body     BLOB    NOT NULL,                            -- v1.JobEvent
+  PRIMARY KEY (ordinal, sequence)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE counters (name TEXT PRIMARY KEY, value INTEGER NOT NULL) STRICT;
+INSERT INTO counters (name, value) VALUES ('fencing_token', 0);
+)sql";
+
+constexpr std::array kMigrations = {Migration{1, "jobs and events", kJobsAndEvents}};
+
+absl::Status apply(SqliteDatabase& database, const Migration& step) {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  absl::Status status = database.execute("BEGIN IMMEDIATE");
+  if (!status.ok()) return status;
+  status = database.execute(step.sql);
+  if (status.ok()) {
+    SqliteStatement record(database, "INSERT INTO schema_version (version, name, applied_ms) VALUES (?, ?, ?)");
+    status = record.bind(step.version)
+                 .bind_text(step.name)
+                 .bind(std::chrono::duration_cast<std::chrono::milliseconds>(now).count())
+                 .run();
+  }
+  if (status.ok()) status = database.execute("COMMIT");
+  if (status.ok()) return status;
+  database.execute("ROLLBACK").IgnoreError();  // the first error is the one to tell
+  return absl::Status(status.code(), fmt::format("migration {} ({}): {}", step.version, step.name, std::string(status.message())));
+}
+
+}  // namespace
+
+std::span<const Migration> sqlite_migrations() { return kMigrations; }
+
+absl::Status migrate(SqliteDatabase& database, std::span<const Migration> steps) {
+  absl::Status status = database.execute(
+      "CREATE TABLE IF NOT EXISTS schema_version "
+      "(version INTEGER PRIMARY KEY, name TEXT NOT NULL, applied_ms INTEGER NOT NULL) STRICT");
+  if (!status.ok()) return status;
+  std::int64_t version = 0;
+  {
+    SqliteStatement newest(database, "SELECT coalesce(max(version), 0) FROM schema_version");
+    if (newest.step()) version = newest.integer(0);
+    if (!newest.status().ok()) return newest.status();
+  }
+  const std::int64_t known = steps.empty() ? 0 : steps.back().version;
+  if (version > known) {
+    return absl::FailedPreconditionError(
+        fmt::format("the store has schema version {}, this server knows up to {}: use the newer server", version, known));
+  }
+  for (const Migration& step : steps) {
+    if (step.version <= version) continue;
+    if (status = apply(database, step); !status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace skinframe::server
