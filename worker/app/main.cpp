@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // skinframe-worker: the agent that works for a server, and the verbs that run on this machine alone.
-#include <signal.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
@@ -45,7 +44,11 @@ int main(int argc, char** argv) {
   job->add_option("WORKDIR", job_dir, "Folder with job.json")->required();
   LocalVerbs local(app);
 
-  CLI11_PARSE_OR_USAGE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : 2;  // 2: wrong usage, whatever CLI11 numbers it
+  }
 
   if (job->parsed()) return run_job(job_dir);
   if (const auto code = local.run()) return *code;

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/job/read_job.h"
+
+#include <gtest/gtest.h>
+
+namespace skinframe {
+namespace {
+
+using nlohmann::json;
+
+json valid_job() {
+  return json::parse(R"({
+    "job_id": "j1", "mesh_path": "/tmp/mesh", "mesh_name": "fish.obj",
+    "printers": [{"printer": {"id": "p-1", "process": "powder", "min_radius_mm": 0.5, "tray_mm": [457, 380, 330],
+                              "max_internal_radius_mm": 5},
+                  "material": {"id": "pa", "tensile_modulus_mpa": 1586, "shear_modulus_mpa": 1387,
+                               "tensile_strength_mpa": 43, "shear_strength_mpa": null, "slenderness": 60,
+                               "density_g_cm3": 1.15, "price_per_kg": null}}],
+    "loads": [{"name": "side", "place": "top", "point_mm": null, "force_n": [20, 0, 0], "radius_mm": 5}],
+    "options": {"up": "y", "balance": "require", "size_mm": 200, "skin_nodes": null, "internal_nodes": 40,
+                "voxel_mm": null, "smooth": "auto", "orient": "keep", "no_optimize": false, "order": "paper",
+                "displacement_limit_mm": 0.05, "seed": 7},
+    "threads": 2})");
+}
+
+TEST(ReadJob, EveryFieldArrives) {
+  auto job = parse_job(valid_job());
+  ASSERT_TRUE(job.ok()) << job.error().message;
+  const JobRequest& request = job->request;
+  EXPECT_EQ(request.printers[0].printer.tray_mm, Eigen::Vector3d(457, 380, 330));
+  EXPECT_EQ(request.printers[0].material.tensile_strength_mpa, 43);
+  EXPECT_FALSE(request.printers[0].material.shear_strength_mpa);
+  EXPECT_EQ(std::get<Place>(request.loads[0].where), Place::kTop);
+  EXPECT_EQ(request.options.up, Up::kY);
+  EXPECT_EQ(request.options.balance, BalanceMode::kRequire);
+  EXPECT_EQ(request.options.size_mm, 200);
+  EXPECT_FALSE(request.options.skin_nodes);
+  EXPECT_EQ(request.options.internal_nodes, 40);
+  EXPECT_EQ(request.options.order, StageOrder::kPaper);
+  EXPECT_EQ(request.options.seed, 7u);
+  EXPECT_EQ(job->threads, 2);
+}
+
+struct Spoiled {
+  const char* what;
+  json patch;
+  const char* named;
+};
+
+TEST(ReadJob, EachWrongFieldIsRefusedByName) {
+  const std::vector<Spoiled> cases = {
+      {"printer id that climbs", {{"op", "replace"}, {"path", "/printers/0/printer/id"}, {"value", "../etc"}}, "id"},
+      {"radius of zero", {{"op", "replace"}, {"path", "/printers/0/printer/min_radius_mm"}, {"value", 0}}, "min_radius_mm"},
+      {"unknown process", {{"op", "replace"}, {"path", "/printers/0/printer/process"}, {"value", "clay"}}, "process"},
+      {"size below a millimetre", {{"op", "replace"}, {"path", "/options/size_mm"}, {"value", 0.5}}, "size_mm"},
+      {"nodes as text", {{"op", "replace"}, {"path", "/options/skin_nodes"}, {"value", "many"}}, "skin_nodes"},
+      {"force of two numbers", {{"op", "replace"}, {"path", "/loads/0/force_n"}, {"value", {1, 2}}}, "force_n"},
+      {"no printer", {{"op", "replace"}, {"path", "/printers"}, {"value", json::array()}}, "printers"},
+      {"missing options", {{"op", "remove"}, {"path", "/options"}}, "options"},
+  };
+  for (const Spoiled& spoiled : cases) {
+    auto job = parse_job(valid_job().patch(json::array({spoiled.patch})));
+    ASSERT_FALSE(job.ok()) << spoiled.what;
+    EXPECT_EQ(job.error().kind, ErrorKind::kInvalidInput) << spoiled.what;
+    EXPECT_NE(job.error().message.find(spoiled.named), std::string::npos) << job.error().message;
+  }
+}
+
+TEST(ReadJob, WhatIsNotBuiltIsRefusedByName) {
+  json job = valid_job();
+  job["options"]["smooth"] = "on";
+  auto refused = parse_job(job);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUnsupported);
+  EXPECT_NE(refused.error().message.find("smooth"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace skinframe
