@@ -29,7 +29,7 @@ struct ReadLimits {
   std::uint64_t max_file_bytes = std::uint64_t{1} << 30;
   std::uint64_t max_vertices = 20'000'000;   // at most 2^31 - 1: indices are int
   std::uint64_t max_triangles = 10'000'000;  // at most 2^31 - 1
-  std::uint64_t max_polygon_corners = 10'000;  // of one face; ear clipping is quadratic
+  std::uint64_t max_polygon_corners = 4096;  // of one face; ear clipping is quadratic and worse
 
   Status validate() const;
 };
