@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The check says yes to a result as it was made, and no to each lie told in a copy of it.
+#include "worker/check/check.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "tests/worker/pipeline/small_job.h"
+
+namespace skinframe::check {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr const char* kPrinter = "sinterstation-hiq";
+
+json read_json(const fs::path& path) {
+  std::ifstream in(path);
+  return json::parse(in);
+}
+void write_json(const fs::path& path, const json& document) { std::ofstream(path) << document; }
+
+// One honest result for all tests of this file.
+class CheckTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new test::ScratchFolder;
+    JobRequest request = test::sample_job("egg", 60, 60, folder_->path());
+    request.loads = {{"side", Place::kTop, {1, 0, 0}, 5}};
+    RunContext context;
+    auto outcomes = run_pipeline(request, honest(), PipelineObserver{}, context);
+    ASSERT_TRUE(outcomes.ok()) << outcomes.error().message;
+    ASSERT_TRUE(outcomes->front().succeeded()) << outcomes->front().detail;
+  }
+  static void TearDownTestSuite() {
+    delete folder_;
+    folder_ = nullptr;
+  }
+  static fs::path honest() { return folder_->path() / "honest"; }
+
+  // The names of the claims that do not hold, after `spoil` changed a copy.
+  static std::vector<std::string> denied(const std::function<void(const fs::path&)>& spoil) {
+    const fs::path copy = folder_->path() / "copy";
+    fs::remove_all(copy);
+    fs::copy(honest(), copy, fs::copy_options::recursive);
+    spoil(copy);
+    RunContext context;
+    auto verdicts = check_directory(copy, context);
+    if (!verdicts.ok()) return {"error: " + verdicts.error().message};
+    std::vector<std::string> names;
+    for (const Verdict& verdict : *verdicts)
+      for (const Claim& claim : verdict.claims)
+        if (!claim.holds) names.push_back(claim.name);
+    return names;
+  }
+  static std::vector<std::string> denied_report(const std::function<void(json&)>& lie) {
+    return denied([&](const fs::path& copy) {
+      json report = read_json(copy / "report.json");
+      lie(report["printers"][0]);
+      write_json(copy / "report.json", report);
+    });
+  }
+  static std::vector<std::string> denied_frame(const std::function<void(json&)>& lie) {
+    return denied([&](const fs::path& copy) {
+      json frame = read_json(copy / kPrinter / "frame.json");
+      lie(frame);
+      write_json(copy / kPrinter / "frame.json", frame);
+    });
+  }
+
+  static test::ScratchFolder* folder_;
+};
+test::ScratchFolder* CheckTest::folder_ = nullptr;
+
+MATCHER_P(Names, name, "") { return std::find(arg.begin(), arg.end(), name) != arg.end(); }
+
+TEST_F(CheckTest, AnHonestResultHoldsInEveryClaim) {
+  RunContext context;
+  auto verdicts = check_directory(honest(), context);
+  ASSERT_TRUE(verdicts.ok()) << verdicts.error().message;
+  EXPECT_TRUE(verdicts->front().holds()) << to_text(*verdicts);
+}
+
+TEST_F(CheckTest, AMissingTriangleIsNotWatertight) {
+  EXPECT_THAT(denied([](const fs::path& copy) {
+                const fs::path stl = copy / kPrinter / "skin-frame.stl";
+                std::ifstream in(stl, std::ios::binary);
+                std::string bytes((std::istreambuf_iterator<char>(in)), {});
+                std::uint32_t count = 0;
+                std::memcpy(&count, &bytes[80], 4);
+                --count;
+                std::memcpy(&bytes[80], &count, 4);
+                bytes.resize(bytes.size() - 50);
+                std::ofstream(stl, std::ios::binary) << bytes;
+              }),
+              Names("watertight"));
+}
+
+TEST_F(CheckTest, AWallThinnerThanTheSkinIsSeen) {
+  EXPECT_THAT(denied_report([](json& printer) { printer["profile"]["skin_thickness_mm"] = 1.4; }), Names("skin thickness"));
+}
+
+TEST_F(CheckTest, FalseVolumesAndWeightsAreSeen) {
+  EXPECT_THAT(denied_report([](json& p) { p["printed_volume_mm3"] = p["printed_volume_mm3"].get<double>() * 0.99; }),
+              Names("printed volume"));
+  EXPECT_THAT(denied_report([](json& p) { p["weight_g"] = p["weight_g"].get<double>() * 0.9; }),
+              Names("printed ratio and weight"));
+  EXPECT_THAT(denied_report([](json& p) { p["solid_volume_mm3"] = p["solid_volume_mm3"].get<double>() * 1.01; }),
+              Names("outer surface is the solid"));
+  EXPECT_THAT(denied_report([](json& p) { p["skin_volume_mm3"] = p["skin_volume_mm3"].get<double>() * 0.8; }),
+              Names("skin volume"));
+  EXPECT_THAT(denied_report([](json& p) { p["frame_volume_mm3"] = p["frame_volume_mm3"].get<double>() * 0.99; }),
+              Names("nominal volumes"));
+  EXPECT_THAT(denied_report([](json& p) { p["topology_volume_mm3"] = p["size_volume_mm3"].get<double>() * 1.1; }),
+              Names("no volume rises from stage to stage"));
+}
+
+TEST_F(CheckTest, AStrutThinnerThanThePrinterCanIsSeen) {
+  EXPECT_THAT(denied_frame([](json& frame) { frame["struts"][3]["radius_mm"] = 0.4; }), Names("radii"));
+}
+
+TEST_F(CheckTest, AStrutTooThickForTheSkinIsSeen) {
+  EXPECT_THAT(denied_frame([](json& frame) { frame["struts"][3]["radius_mm"] = 1.6; }), Names("radii"));
+}
+
+TEST_F(CheckTest, ASlenderStrutIsSeen) {
+  EXPECT_THAT(denied_frame([](json& frame) { frame["material"]["slenderness"] = 5; }), Names("slenderness"));
+}
+
+TEST_F(CheckTest, ATornTriangulationIsSeen) {
+  EXPECT_THAT(denied_frame([](json& frame) { frame["skin_triangles"].erase(0); }), Names("skin triangulation"));
+}
+
+TEST_F(CheckTest, AMovedNodeBreaksEquilibrium) {
+  EXPECT_THAT(denied_frame([](json& frame) { frame["nodes"][20][0] = frame["nodes"][20][0].get<double>() + 1.0; }),
+              Names("equilibrium (paper model)"));
+}
+
+TEST_F(CheckTest, AFalseDisplacementIsSeen) {
+  EXPECT_THAT(denied_report([](json& p) { p["max_displacement_mm"] = 0.5 * p["max_displacement_mm"].get<double>(); }),
+              Names("displacement (paper model)"));
+}
+
+TEST_F(CheckTest, ALimitThatIsNotKeptIsSeen) {
+  EXPECT_THAT(denied_frame([](json& frame) { frame["displacement_limit_mm"] = 1e-4; }), Names("displacement (paper model)"));
+}
+
+TEST_F(CheckTest, AStressBeyondStrengthIsSeen) {
+  EXPECT_THAT(denied_frame([](json& frame) { frame["material"]["tensile_strength_mpa"] = 1e-3; }),
+              Names("stresses (paper model)"));
+}
+
+TEST_F(CheckTest, ACentreOfGravityOutsideTheBaseIsSeen) {
+  EXPECT_THAT(denied_frame([](json& frame) { frame["skin_mass"]["centroid_mm"] = {500, 0, 10}; }), Names("balance"));
+}
+
+TEST_F(CheckTest, ATraySmallerThanTheBodyIsSeen) {
+  EXPECT_THAT(denied_report([](json& p) { p["profile"]["tray_mm"] = {20, 20, 20}; }), Names("fits the tray"));
+}
+
+TEST_F(CheckTest, ANodeWithoutAPathToTheBaseIsSeen) {
+  EXPECT_THAT(denied_frame([](json& frame) { frame["nodes"].push_back({0, 0, 20}); frame["skin_weight_n"].push_back(0.0); }),
+              Names("every node stands on the base"));
+}
+
+TEST_F(CheckTest, AMissingOrBrokenFileIsAnErrorThatNamesIt) {
+  const auto error = denied([](const fs::path& copy) { fs::remove(copy / kPrinter / "frame.json"); });
+  ASSERT_EQ(error.size(), 1u);
+  EXPECT_NE(error[0].find("frame.json"), std::string::npos) << error[0];
+  const auto broken = denied([](const fs::path& copy) { std::ofstream(copy / "report.json") << "{\"printers\": ["; });
+  EXPECT_NE(broken.at(0).find("not JSON"), std::string::npos) << broken[0];
+  const auto index = denied_frame([](json& frame) { frame["struts"][0]["a"] = 100000; });
+  EXPECT_NE(index.at(0).find("struts[0].a"), std::string::npos) << index[0];
+}
+
+}  // namespace
+}  // namespace skinframe::check
