@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The whole agent against a server of the generated services in this process; the job is a shell script.
+#include "worker/agent/agent.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/util/time_util.h>
+#include <grpcpp/grpcpp.h>
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <deque>
+#include <thread>
+
+#include "skinframe/v1/worker.grpc.pb.h"
+#include "tests/client/fake/fake_artifacts.h"
+#include "tests/worker/agent/temporary_folder.h"
+#include "worker/agent/artifact_transfer.h"
+
+namespace skinframe::agent {
+namespace {
+
+using google::protobuf::util::TimeUtil;
+
+class FakeWorkerService final : public v1::WorkerService::Service {
+ public:
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::deque<v1::Assignment> queue;
+  std::vector<v1::HeartbeatRequest> heartbeats;
+  std::vector<v1::CompleteRequest> completions;
+  bool cancel = false;
+  bool take_lease_away = false;
+  int refuse_completions = 0;
+  bool stopping = false;
+
+  grpc::Status Lease(grpc::ServerContext* context, const v1::LeaseRequest*,
+                     v1::LeaseResponse* response) override {
+    std::unique_lock lock(mutex);
+    while (queue.empty() && !stopping && !context->IsCancelled()) {
+      changed.wait_for(lock, std::chrono::milliseconds(5));
+    }
+    if (queue.empty()) return {grpc::StatusCode::UNAVAILABLE, "stopping"};
+    *response->mutable_assignment() = queue.front();
+    queue.pop_front();
+    return grpc::Status::OK;
+  }
+
+  grpc::Status Heartbeat(grpc::ServerContext*, const v1::HeartbeatRequest* request,
+                         v1::HeartbeatResponse* response) override {
+    const std::lock_guard lock(mutex);
+    heartbeats.push_back(*request);
+    changed.notify_all();
+    if (take_lease_away) return {grpc::StatusCode::ABORTED, "another worker has the job"};
+    response->set_cancel(cancel);
+    *response->mutable_lease_expire_time() = TimeUtil::GetCurrentTime() + TimeUtil::SecondsToDuration(10);
+    return grpc::Status::OK;
+  }
+
+  grpc::Status Complete(grpc::ServerContext*, const v1::CompleteRequest* request,
+                        v1::CompleteResponse*) override {
+    const std::lock_guard lock(mutex);
+    if (refuse_completions-- > 0) return {grpc::StatusCode::UNAVAILABLE, "restarting"};
+    completions.push_back(*request);
+    changed.notify_all();
+    return grpc::Status::OK;
+  }
+};
+
+class AgentTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    grpc::ServerBuilder builder;
+    builder.AddListeningPort("127.0.0.1:0", grpc::InsecureServerCredentials(), &port_);
+    builder.RegisterService(&workers_);
+    builder.RegisterService(&artifacts_);
+    server_ = builder.BuildAndStart();
+    ASSERT_NE(server_, nullptr);
+    artifacts_.complete[kMeshHash] = "mesh";
+    options_.work_root = folder_.path() / "work";
+    options_.worker_name = "test";
+  }
+
+  void TearDown() override {
+    stop_agent();
+    server_->Shutdown();
+  }
+
+  void start_agent(const std::string& script) {
+    options_.self_executable = folder_.script(script);
+    const auto channel =
+        grpc::CreateChannel("127.0.0.1:" + std::to_string(port_), grpc::InsecureChannelCredentials());
+    agent_ = std::thread([this, channel] {
+      const Status ended = run_agent_until(options_, channel, stop_.get_token());
+      EXPECT_TRUE(ended.ok());
+    });
+  }
+
+  void stop_agent() {
+    stop_.request_stop();
+    if (agent_.joinable()) agent_.join();
+  }
+
+  void assign() {
+    v1::Assignment a;
+    a.set_job_id("job-1");
+    a.set_fencing_token(7);
+    a.set_attempt(1);
+    a.mutable_spec()->set_mesh_sha256(kMeshHash);
+    a.mutable_spec()->add_printers();
+    a.add_printers()->set_process(v1::PRINT_PROCESS_POWDER);
+    a.add_materials();
+    *a.mutable_heartbeat_interval() = TimeUtil::MillisecondsToDuration(20);
+    *a.mutable_lease_expire_time() = TimeUtil::GetCurrentTime() + TimeUtil::SecondsToDuration(10);
+    const std::lock_guard lock(workers_.mutex);
+    workers_.queue.push_back(a);
+    workers_.changed.notify_all();
+  }
+
+  template <class Predicate>
+  bool wait_for(Predicate predicate) {
+    std::unique_lock lock(workers_.mutex);
+    return workers_.changed.wait_for(lock, std::chrono::seconds(20), predicate);
+  }
+
+  v1::CompleteRequest completion() {
+    EXPECT_TRUE(wait_for([&] { return !workers_.completions.empty(); }));
+    const std::lock_guard lock(workers_.mutex);
+    return workers_.completions.empty() ? v1::CompleteRequest() : workers_.completions.front();
+  }
+
+  // SHA-256 of "mesh"
+  const std::string kMeshHash = [] {
+    const TemporaryFolder folder;
+    std::ofstream(folder.path() / "m") << "mesh";
+    return digest_file(folder.path() / "m")->sha256;
+  }();
+  TemporaryFolder folder_;
+  fake::FakeArtifacts artifacts_;
+  FakeWorkerService workers_;
+  AgentOptions options_;
+  int port_ = 0;
+  std::unique_ptr<grpc::Server> server_;
+  std::stop_source stop_;
+  std::thread agent_;
+};
+
+constexpr char kGoodJob[] = R"sh(
+[ "$1" = run-job ] && [ "$(cat $2/mesh)" = mesh ] && [ -s $2/job.json ] || exit 9
+echo '{"progress": {"stage": "size", "iteration": 1, "total_volume_mm3": 100}}'
+echo 'garbage that no agent should fall over'
+mkdir -p $2/out/p-1; printf report > $2/out/report.json; printf solid > $2/out/p-1/skin-frame.stl
+echo '{"state": "SUCCEEDED", "reason": "NONE", "printers": [{"printer": "p-1", "state": "SUCCEEDED"}]}' > $2/outcome.json
+)sh";
+
+TEST_F(AgentTest, AJobGoesFromLeaseToResult) {
+  assign();
+  start_agent(kGoodJob);
+  const auto done = completion();
+  EXPECT_EQ(done.fencing_token(), 7);
+  EXPECT_EQ(done.state(), v1::JOB_STATE_SUCCEEDED) << done.detail();
+  ASSERT_EQ(done.printers_size(), 1);
+  ASSERT_EQ(done.files_size(), 2);
+  EXPECT_EQ(done.files(0).path(), "p-1/skin-frame.stl");
+  EXPECT_EQ(done.files(1).path(), "report.json");
+  EXPECT_EQ(artifacts_.complete[done.files(1).sha256()], "report");
+  const std::lock_guard lock(workers_.mutex);
+  ASSERT_FALSE(workers_.heartbeats.empty());
+  bool told = false;
+  for (const auto& beat : workers_.heartbeats) told = told || beat.progress_size() > 0;
+  EXPECT_TRUE(told) << "progress was lost";
+}
+
+TEST_F(AgentTest, NothingOfAJobStaysOnTheDisk) {
+  assign();
+  start_agent(kGoodJob);
+  completion();
+  stop_agent();
+  EXPECT_TRUE(std::filesystem::is_empty(options_.work_root));
+}
+
+TEST_F(AgentTest, WhatAKilledAgentLeftGoesAtTheNextStartAndALivingOnesFolderStays) {
+  std::filesystem::create_directories(options_.work_root / "agent-dead" / "job-3");
+  std::ofstream(options_.work_root / "agent-dead" / "lock").flush();
+  assign();
+  start_agent(kGoodJob);
+  completion();
+  EXPECT_FALSE(std::filesystem::exists(options_.work_root / "agent-dead"));
+}
+
+TEST_F(AgentTest, ACrashedJobIsHandedBackForAnotherAttempt) {
+  assign();
+  start_agent("echo 'triangle 41' >&2; kill -SEGV $$\n");
+  const auto done = completion();
+  EXPECT_EQ(done.state(), v1::JOB_STATE_FAILED);
+  EXPECT_EQ(done.reason(), v1::REASON_CRASHED);
+  EXPECT_TRUE(done.retryable());
+  EXPECT_THAT(done.detail(),
+              testing::AllOf(testing::HasSubstr("SIGSEGV"), testing::HasSubstr("triangle 41")));
+}
+
+TEST_F(AgentTest, ACancelledJobIsStoppedAndCompletedAsCancelled) {
+  workers_.cancel = true;
+  assign();
+  start_agent("while :; do :; done\n");
+  EXPECT_EQ(completion().state(), v1::JOB_STATE_CANCELLED);
+}
+
+TEST_F(AgentTest, AJobWhoseLeaseIsLostIsStoppedAndItsResultDropped) {
+  workers_.take_lease_away = true;
+  assign();
+  start_agent("touch " + (folder_.path() / "started").string() + "; while :; do :; done\n");
+  ASSERT_TRUE(wait_for([&] { return !workers_.heartbeats.empty(); }));
+  {
+    const std::lock_guard lock(workers_.mutex);
+    workers_.take_lease_away = false;
+  }
+  assign();  // the slot is free again: the next lease is asked for only after the first job's end
+  ASSERT_TRUE(wait_for([&] { return workers_.queue.empty(); }));
+  const std::lock_guard lock(workers_.mutex);
+  EXPECT_TRUE(workers_.completions.empty());
+}
+
+TEST_F(AgentTest, AStoppedWorkerHandsItsJobBackAtOnce) {
+  assign();
+  start_agent("while :; do :; done\n");
+  ASSERT_TRUE(wait_for([&] { return !workers_.heartbeats.empty(); }));
+  stop_agent();
+  const auto done = completion();
+  EXPECT_EQ(done.reason(), v1::REASON_CRASHED);
+  EXPECT_TRUE(done.retryable());
+  EXPECT_EQ(done.detail(), "worker stopped");
+}
+
+TEST_F(AgentTest, ACompletionIsSentUntilTheServerTakesIt) {
+  workers_.refuse_completions = 2;
+  assign();
+  start_agent(kGoodJob);
+  EXPECT_EQ(completion().state(), v1::JOB_STATE_SUCCEEDED);
+}
+
+TEST_F(AgentTest, InterruptedTransfersGoOnWhereTheyStopped) {
+  const std::string big(600'000, 'x');
+  const std::filesystem::path file = folder_.path() / "big";
+  std::ofstream(file) << big;
+  const auto digest = digest_file(file);
+  ASSERT_TRUE(digest.ok());
+  artifacts_.break_upload_after = 300'000;
+  artifacts_.break_download_after = 300'000;
+  const auto stub = v1::ArtifactService::NewStub(
+      grpc::CreateChannel("127.0.0.1:" + std::to_string(port_), grpc::InsecureChannelCredentials()));
+  ASSERT_TRUE(upload_artifact(*stub, file, *digest, {}).ok());
+  ASSERT_EQ(artifacts_.upload_offsets.size(), 2u);
+  EXPECT_GT(artifacts_.upload_offsets[1], 0);
+  EXPECT_EQ(artifacts_.complete[digest->sha256], big);
+  ASSERT_TRUE(download_artifact(*stub, digest->sha256, folder_.path() / "back", {}).ok());
+  EXPECT_EQ(artifacts_.download_offsets, (std::vector<std::int64_t>{0, 300'000}));
+  EXPECT_EQ(std::filesystem::file_size(folder_.path() / "back"), big.size());
+}
+
+TEST_F(AgentTest, AMeshWithAnotherContentIsRefused) {
+  artifacts_.complete[kMeshHash] = "no mesh";
+  const auto stub = v1::ArtifactService::NewStub(
+      grpc::CreateChannel("127.0.0.1:" + std::to_string(port_), grpc::InsecureChannelCredentials()));
+  EXPECT_EQ(download_artifact(*stub, kMeshHash, folder_.path() / "back", {}).error_code(),
+            grpc::StatusCode::DATA_LOSS);
+}
+
+TEST(AgentOptions, OutOfRangeIsNamed) {
+  AgentOptions options;
+  EXPECT_TRUE(options.validate().ok());
+  options.slots = 0;
+  EXPECT_THAT(options.validate().error().message, testing::HasSubstr("slots"));
+  options.slots = 1;
+  options.memory_limit_mb = 5;
+  EXPECT_THAT(options.validate().error().message, testing::HasSubstr("memory limit"));
+}
+
+}  // namespace
+}  // namespace skinframe::agent

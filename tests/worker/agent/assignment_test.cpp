@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/agent/assignment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace skinframe::agent {
+namespace {
+
+using nlohmann::json;
+
+v1::Assignment minimal() {
+  v1::Assignment a;
+  a.set_job_id("j1");
+  a.mutable_spec()->set_mesh_sha256(std::string(64, 'a'));
+  a.mutable_spec()->set_mesh_name("fish.obj");
+  a.mutable_spec()->add_printers()->set_printer_id("sinterstation-hiq");
+  auto* printer = a.add_printers();
+  printer->set_id("sinterstation-hiq");
+  printer->set_process(v1::PRINT_PROCESS_POWDER);
+  printer->set_min_radius_mm(0.5);
+  printer->set_tray_x_mm(457);
+  printer->set_tray_y_mm(380);
+  printer->set_tray_z_mm(330);
+  printer->set_max_internal_radius_mm(5);
+  auto* material = a.add_materials();
+  material->set_id("pa");
+  material->set_tensile_modulus_mpa(1586);
+  material->set_tensile_strength_mpa(43);
+  return a;
+}
+
+json translated(const v1::Assignment& a) {
+  const auto text = job_request_json(a, "/w/mesh", 2);
+  EXPECT_TRUE(text.ok()) << text.error().message;
+  return text.ok() ? json::parse(*text) : json();
+}
+
+TEST(AssignmentTranslation, WhatTheApiLeavesOpenIsSpelledOut) {
+  const json j = translated(minimal());
+  EXPECT_EQ(j["job_id"], "j1");
+  EXPECT_EQ(j["mesh_path"], "/w/mesh");
+  EXPECT_EQ(j["threads"], 2);
+  EXPECT_EQ(j["options"]["up"], "z");
+  EXPECT_EQ(j["options"]["balance"], "auto");
+  EXPECT_EQ(j["options"]["order"], "tight");
+  EXPECT_EQ(j["options"]["displacement_limit_mm"], 0.05);
+  EXPECT_EQ(j["options"]["seed"], 1);
+  for (const char* open : {"size_mm", "skin_nodes", "internal_nodes", "voxel_mm"}) {
+    EXPECT_TRUE(j["options"].at(open).is_null()) << open;
+  }
+}
+
+TEST(AssignmentTranslation, ProfilesKeepTheirFiguresAndAnAbsentLimitIsNull) {
+  const json p = translated(minimal())["printers"][0];
+  EXPECT_EQ(p["printer"]["process"], "powder");
+  EXPECT_EQ(p["printer"]["tray_mm"], (json{457.0, 380.0, 330.0}));
+  EXPECT_EQ(p["material"]["tensile_strength_mpa"], 43.0);
+  EXPECT_TRUE(p["material"]["shear_strength_mpa"].is_null());
+  EXPECT_TRUE(p["material"]["slenderness"].is_null());
+}
+
+TEST(AssignmentTranslation, ALoadActsAtAPlaceOrAtAPointNeverBoth) {
+  auto a = minimal();
+  auto* side = a.mutable_spec()->add_loads();
+  side->set_name("side");
+  side->set_place(v1::PLACE_TOP);
+  side->mutable_force_n()->set_x(20);
+  auto* pinch = a.mutable_spec()->add_loads();
+  pinch->set_name("pinch");
+  pinch->mutable_point_mm()->set_z(120);
+  pinch->set_radius_mm(8);
+  const json loads = translated(a)["loads"];
+  EXPECT_EQ(loads[0]["place"], "top");
+  EXPECT_TRUE(loads[0]["point_mm"].is_null());
+  EXPECT_EQ(loads[0]["force_n"], (json{20.0, 0.0, 0.0}));
+  EXPECT_EQ(loads[0]["radius_mm"], 5.0);
+  EXPECT_TRUE(loads[1]["place"].is_null());
+  EXPECT_EQ(loads[1]["point_mm"], (json{0.0, 0.0, 120.0}));
+  EXPECT_EQ(loads[1]["radius_mm"], 8.0);
+}
+
+TEST(AssignmentTranslation, WhatThisWorkerDoesNotBuildIsRefusedByName) {
+  auto problem = minimal();
+  problem.mutable_spec()->set_frame_problem_sha256(std::string(64, 'b'));
+  EXPECT_EQ(job_request_json(problem, "/w/mesh", 1).error().kind, ErrorKind::kUnsupported);
+  auto warm = minimal();
+  warm.mutable_spec()->set_warm_start_job_id("j0");
+  EXPECT_EQ(job_request_json(warm, "/w/mesh", 1).error().kind, ErrorKind::kUnsupported);
+}
+
+TEST(AssignmentTranslation, AServerThatBreaksTheProtocolIsTold) {
+  auto unequal = minimal();
+  unequal.add_printers();
+  EXPECT_EQ(job_request_json(unequal, "/w/mesh", 1).error().kind, ErrorKind::kInternal);
+  auto unknown = minimal();
+  unknown.mutable_spec()->mutable_options()->set_up(static_cast<v1::Axis>(9));
+  EXPECT_EQ(job_request_json(unknown, "/w/mesh", 1).error().kind, ErrorKind::kInternal);
+  auto nowhere = minimal();
+  nowhere.mutable_spec()->add_loads()->set_name("side");
+  EXPECT_EQ(job_request_json(nowhere, "/w/mesh", 1).error().kind, ErrorKind::kInternal);
+}
+
+}  // namespace
+}  // namespace skinframe::agent

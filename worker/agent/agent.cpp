@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/agent/agent.h"
+
+#include <fmt/format.h>
+#include <google/protobuf/util/time_util.h>
+#include <grpcpp/create_channel.h>
+#include <grpcpp/security/credentials.h>
+#include <signal.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <fstream>
+#include <random>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+#include "worker/agent/backoff.h"
+#include "worker/agent/job_runner.h"
+#include "worker/agent/work_folder.h"
+
+namespace skinframe {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr std::chrono::seconds kLeaseWait{10};  // one long poll
+constexpr std::chrono::seconds kLeaseGrace{5};  // for the answer to come after that
+constexpr milliseconds kShortestPoll{50};       // an empty answer sooner than this is not a long poll
+
+std::string random_hex() {
+  std::random_device device;
+  return fmt::format("{:08x}{:08x}{:08x}{:08x}", device(), device(), device(), device());
+}
+
+std::string default_name() {
+  std::array<char, 64> host{};
+  if (::gethostname(host.data(), host.size() - 1) != 0) return fmt::format("worker-{}", ::getpid());
+  return fmt::format("{}-{}", host.data(), ::getpid());
+}
+
+Result<std::shared_ptr<grpc::Channel>> open_channel(const AgentOptions& options) {
+  std::shared_ptr<grpc::ChannelCredentials> credentials = grpc::InsecureChannelCredentials();
+  if (!options.tls_root_cert.empty()) {
+    std::ifstream in(options.tls_root_cert);
+    std::stringstream pem;
+    pem << in.rdbuf();
+    if (!in || pem.str().empty()) {
+      return io_error(fmt::format("{}: no TLS root certificate can be read", options.tls_root_cert.string()));
+    }
+    grpc::SslCredentialsOptions ssl;
+    ssl.pem_root_certs = pem.str();
+    credentials = grpc::SslCredentials(ssl);
+  }
+  grpc::ChannelArguments arguments;
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, 20'000);
+  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 5'000);
+  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
+  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 100);
+  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 2'000);
+  return grpc::CreateCustomChannel(options.server_address, credentials, arguments);
+}
+
+// One job at a time: ask, run, ask again.
+class Slot {
+ public:
+  Slot(const AgentOptions& options, std::string worker_id, std::string instance_id,
+       const std::filesystem::path& folder, const std::shared_ptr<grpc::Channel>& channel)
+      : options_(options),
+        folder_(folder),
+        worker_(v1::WorkerService::NewStub(channel)),
+        artifacts_(v1::ArtifactService::NewStub(channel)) {
+    request_.set_worker_id(std::move(worker_id));
+    request_.set_instance_id(std::move(instance_id));
+    request_.set_version(SKINFRAME_VERSION);
+    *request_.mutable_wait() = google::protobuf::util::TimeUtil::SecondsToDuration(kLeaseWait.count());
+  }
+
+  void run(const std::stop_token& stop) {
+    agent::Backoff backoff(milliseconds(100), milliseconds(5000), std::random_device{}());
+    bool answered = true;
+    while (!stop.stop_requested()) {
+      v1::LeaseResponse response;
+      const auto asked = steady_clock::now();
+      const grpc::Status status = lease(stop, response);
+      if (status.ok() && response.has_assignment()) {
+        backoff.reset();
+        agent::run_assignment(options_, folder_, {*worker_, *artifacts_}, response.assignment(), stop);
+      } else if (status.ok() && steady_clock::now() - asked >= kShortestPoll) {
+        backoff.reset();
+      } else if (!stop.stop_requested()) {
+        if (answered && !status.ok()) {
+          spdlog::warn("{} gives no jobs: {}; asking again until it does", options_.server_address,
+                       status.error_message());
+        }
+        agent::wait_unless_stopped(stop, backoff.next());
+      }
+      if (status.ok() && !answered) spdlog::info("{} answers again", options_.server_address);
+      answered = status.ok();
+    }
+  }
+
+ private:
+  grpc::Status lease(const std::stop_token& stop, v1::LeaseResponse& response) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kLeaseWait + kLeaseGrace);
+    const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
+    return worker_->Lease(&context, request_, &response);
+  }
+
+  const AgentOptions& options_;
+  const std::filesystem::path& folder_;
+  std::unique_ptr<v1::WorkerService::Stub> worker_;
+  std::unique_ptr<v1::ArtifactService::Stub> artifacts_;
+  v1::LeaseRequest request_;
+};
+
+}  // namespace
+
+Status AgentOptions::validate() const {
+  if (server_address.empty()) return invalid_input("the server's address is empty");
+  if (slots < 1 || slots > 64) return invalid_input(fmt::format("slots: {} is not in 1 .. 64", slots));
+  if (threads_per_job < 1 || threads_per_job > 256) {
+    return invalid_input(fmt::format("threads per job: {} is not in 1 .. 256", threads_per_job));
+  }
+  if (memory_limit_mb != 0 && memory_limit_mb < 64) {
+    return invalid_input(fmt::format("memory limit: {} MB is neither 0 nor at least 64", memory_limit_mb));
+  }
+  if (worker_name.size() > 96) return invalid_input("the worker's name is longer than 96 bytes");
+  return ok_status();
+}
+
+Status run_agent_until(const AgentOptions& options, const std::shared_ptr<grpc::Channel>& channel,
+                       std::stop_token stop) {
+  const std::string instance_id = random_hex();
+  const std::filesystem::path root = options.work_root.empty()
+                                         ? std::filesystem::temp_directory_path() / "skinframe-worker"
+                                         : options.work_root;
+  const auto folder = agent::AgentFolder::create(std::filesystem::absolute(root), instance_id);
+  if (!folder) return folder.error();
+  const std::string name = options.worker_name.empty() ? default_name() : options.worker_name;
+  spdlog::info("{} asks {} for jobs, {} at a time, in {}", name, options.server_address, options.slots,
+               folder->path().string());
+  std::vector<std::thread> threads;
+  for (int i = 0; i < options.slots; ++i) {
+    threads.emplace_back([&, i] {
+      Slot(options, fmt::format("{}-{}", name, i), instance_id, folder->path(), channel).run(stop);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  return ok_status();
+}
+
+int run_agent(const AgentOptions& options) {
+  sigset_t signals;
+  ::sigemptyset(&signals);
+  ::sigaddset(&signals, SIGTERM);
+  ::sigaddset(&signals, SIGINT);
+  ::pthread_sigmask(SIG_BLOCK, &signals, nullptr);  // every thread inherits this; the waiting one takes them
+
+  Status status = options.validate();
+  if (status) {
+    const auto channel = open_channel(options);
+    if (channel) {
+      std::stop_source stop;
+      std::atomic<bool> done = false;
+      std::thread waiting([&] {
+        const timespec tick{0, 100'000'000};
+        while (!done) {
+          if (::sigtimedwait(&signals, nullptr, &tick) > 0 && stop.request_stop()) spdlog::info("stopping");
+        }
+      });
+      status = run_agent_until(options, *channel, stop.get_token());
+      done = true;
+      waiting.join();
+    } else {
+      status = channel.error();
+    }
+  }
+  if (status) return 0;
+  spdlog::error("{}", status.error().message);
+  return 1;
+}
+
+}  // namespace skinframe

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/agent/artifact_transfer.h"
+
+#include <fmt/format.h>
+#include <grpcpp/client_context.h>
+#include <openssl/evp.h>
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <random>
+
+#include "worker/agent/backoff.h"
+
+namespace skinframe::agent {
+namespace {
+
+constexpr std::size_t kChunkBytes = 256 * 1024;
+
+// A stream that stands still for this long is as good as cut. Enough for 2 GiB over a slow link.
+constexpr std::chrono::minutes kStreamDeadline{10};
+
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+    SKINFRAME_CHECK(context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
+  }
+  void add(std::string_view bytes) {
+    SKINFRAME_CHECK(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1);
+  }
+  std::string hex() {
+    std::array<unsigned char, 32> raw{};
+    SKINFRAME_CHECK(EVP_DigestFinal_ex(context_.get(), raw.data(), nullptr) == 1);
+    std::string out;
+    for (const unsigned char byte : raw) out += fmt::format("{:02x}", byte);
+    return out;
+  }
+
+ private:
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+grpc::Status disk_error(const std::filesystem::path& path, const char* what) {
+  return {grpc::StatusCode::INTERNAL, fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno))};
+}
+
+grpc::Status stopped() { return {grpc::StatusCode::CANCELLED, "told to stop"}; }
+
+// Answers that tell to try again though the server is there; so many, then the answer stands.
+constexpr int kMaxRefusals = 100;
+
+// Calls attempt(context) until it gives something else than UNAVAILABLE (or a code that `again` takes for
+// it).
+template <class Attempt, class Again>
+grpc::Status until_answered(const std::stop_token& stop, Attempt attempt, Again again) {
+  Backoff backoff(std::chrono::milliseconds(100), std::chrono::milliseconds(2000), std::random_device{}());
+  int refusals = 0;
+  while (!stop.stop_requested()) {
+    grpc::ClientContext context;
+    context.set_deadline(std::chrono::system_clock::now() + kStreamDeadline);
+    grpc::Status status;
+    {
+      const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
+      status = attempt(context);
+    }
+    if (stop.stop_requested()) break;
+    if (status.error_code() != grpc::StatusCode::UNAVAILABLE) {
+      if (!again(status) || ++refusals > kMaxRefusals) return status;
+    }
+    if (!wait_unless_stopped(stop, backoff.next())) break;
+  }
+  return stopped();
+}
+
+}  // namespace
+
+Result<FileDigest> digest_file(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return io_error(fmt::format("{}: {}", path.string(), std::strerror(errno)));
+  Sha256 hash;
+  FileDigest out;
+  std::string buffer(kChunkBytes, '\0');
+  while (in) {
+    in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+    const auto got = static_cast<std::size_t>(in.gcount());
+    hash.add({buffer.data(), got});
+    out.size_bytes += static_cast<std::int64_t>(got);
+  }
+  if (in.bad()) return io_error(fmt::format("{}: cannot be read", path.string()));
+  out.sha256 = hash.hex();
+  return out;
+}
+
+grpc::Status download_artifact(v1::ArtifactService::StubInterface& stub, const std::string& sha256,
+                               const std::filesystem::path& path, std::stop_token stop) {
+  std::ofstream out(path, std::ios::binary | std::ios::trunc);
+  if (!out) return disk_error(path, "cannot be written");
+  Sha256 hash;
+  std::int64_t received = 0;
+  const grpc::Status status = until_answered(
+      stop,
+      [&](grpc::ClientContext& context) {
+        v1::DownloadArtifactRequest request;
+        request.set_sha256(sha256);
+        request.set_offset(received);
+        const auto reader = stub.Download(&context, request);
+        v1::DownloadArtifactResponse response;
+        while (reader->Read(&response)) {
+          const std::string& chunk = response.chunk();
+          if (!out.write(chunk.data(), static_cast<std::streamsize>(chunk.size()))) {
+            context.TryCancel();
+            reader->Finish();
+            return disk_error(path, "cannot be written");
+          }
+          hash.add(chunk);
+          received += static_cast<std::int64_t>(chunk.size());
+        }
+        return reader->Finish();
+      },
+      [](const grpc::Status&) { return false; });
+  if (!status.ok()) return status;
+  out.close();
+  if (!out) return disk_error(path, "cannot be written");
+  if (hash.hex() != sha256) {
+    return {grpc::StatusCode::DATA_LOSS, fmt::format("artifact {} came with another content", sha256)};
+  }
+  return grpc::Status::OK;
+}
+
+grpc::Status upload_artifact(v1::ArtifactService::StubInterface& stub, const std::filesystem::path& path,
+                             const FileDigest& digest, std::stop_token stop) {
+  const auto attempt = [&](grpc::ClientContext& context) -> grpc::Status {
+    grpc::ClientContext stat_context;
+    stat_context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(10));
+    v1::StatArtifactRequest stat_request;
+    stat_request.set_sha256(digest.sha256);
+    v1::StatArtifactResponse stat;
+    if (const auto status = stub.Stat(&stat_context, stat_request, &stat); !status.ok()) return status;
+    if (stat.complete()) return grpc::Status::OK;
+
+    std::ifstream in(path, std::ios::binary);
+    in.seekg(stat.resume_offset());
+    if (!in) return disk_error(path, "cannot be read");
+    v1::UploadArtifactResponse response;
+    const auto writer = stub.Upload(&context, &response);
+    v1::UploadArtifactRequest part;
+    part.mutable_header()->set_sha256(digest.sha256);
+    part.mutable_header()->set_size_bytes(digest.size_bytes);
+    part.mutable_header()->set_offset(stat.resume_offset());
+    std::string buffer(kChunkBytes, '\0');
+    for (bool open = writer->Write(part); open && in;) {
+      in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
+      if (in.gcount() == 0) break;
+      part.set_chunk(buffer.data(), static_cast<std::size_t>(in.gcount()));
+      open = writer->Write(part);
+    }
+    writer->WritesDone();
+    return writer->Finish();
+  };
+  return until_answered(stop, attempt, [](const grpc::Status& status) {
+    // ABORTED: another upload of the same content is under way. FAILED_PRECONDITION: it moved on; Stat again.
+    return status.error_code() == grpc::StatusCode::ABORTED ||
+           status.error_code() == grpc::StatusCode::FAILED_PRECONDITION;
+  });
+}
+
+}  // namespace skinframe::agent

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/agent/assignment.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+namespace skinframe::agent {
+namespace {
+
+using nlohmann::json;
+
+// Each returns nullptr for a value that this version does not know: a newer server may send one.
+const char* name_of(v1::PrintProcess process) {
+  switch (process) {
+    case v1::PRINT_PROCESS_POWDER:
+      return "powder";
+    case v1::PRINT_PROCESS_EXTRUSION:
+      return "extrusion";
+    case v1::PRINT_PROCESS_RESIN:
+      return "resin";
+    default:
+      return nullptr;
+  }
+}
+
+const char* name_of(v1::Axis axis) {
+  switch (axis) {
+    case v1::AXIS_X:
+      return "x";
+    case v1::AXIS_Y:
+      return "y";
+    case v1::AXIS_UNSPECIFIED:
+    case v1::AXIS_Z:
+      return "z";
+    default:
+      return nullptr;
+  }
+}
+
+const char* name_of(v1::Balance balance) {
+  switch (balance) {
+    case v1::BALANCE_UNSPECIFIED:
+    case v1::BALANCE_AUTO:
+      return "auto";
+    case v1::BALANCE_REQUIRE:
+      return "require";
+    case v1::BALANCE_OFF:
+      return "off";
+    default:
+      return nullptr;
+  }
+}
+
+const char* name_of(v1::Smooth smooth) {
+  switch (smooth) {
+    case v1::SMOOTH_UNSPECIFIED:
+    case v1::SMOOTH_AUTO:
+      return "auto";
+    case v1::SMOOTH_ON:
+      return "on";
+    case v1::SMOOTH_OFF:
+      return "off";
+    default:
+      return nullptr;
+  }
+}
+
+const char* name_of(v1::Orient orient) {
+  switch (orient) {
+    case v1::ORIENT_UNSPECIFIED:
+    case v1::ORIENT_KEEP:
+      return "keep";
+    case v1::ORIENT_BEST:
+      return "best";
+    default:
+      return nullptr;
+  }
+}
+
+const char* name_of(v1::StageOrder order) {
+  switch (order) {
+    case v1::STAGE_ORDER_UNSPECIFIED:
+    case v1::STAGE_ORDER_TIGHT:
+      return "tight";
+    case v1::STAGE_ORDER_PAPER:
+      return "paper";
+    default:
+      return nullptr;
+  }
+}
+
+const char* name_of(v1::Place place) {
+  switch (place) {
+    case v1::PLACE_TOP:
+      return "top";
+    case v1::PLACE_BOTTOM:
+      return "bottom";
+    case v1::PLACE_LEFT:
+      return "left";
+    case v1::PLACE_RIGHT:
+      return "right";
+    case v1::PLACE_FRONT:
+      return "front";
+    case v1::PLACE_BACK:
+      return "back";
+    default:
+      return nullptr;
+  }
+}
+
+template <class T>
+json or_null(bool present, T value) {
+  return present ? json(value) : json(nullptr);
+}
+
+json xyz(const v1::Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+Result<json> printer_json(const v1::PrinterProfile& printer, const v1::MaterialProfile& material) {
+  const char* process = name_of(printer.process());
+  if (process == nullptr) {
+    return internal_error(fmt::format("printer {}: print process {} is unknown to this worker", printer.id(),
+                                      static_cast<int>(printer.process())));
+  }
+  json p = {{"id", printer.id()},
+            {"process", process},
+            {"min_radius_mm", printer.min_radius_mm()},
+            {"tray_mm", {printer.tray_x_mm(), printer.tray_y_mm(), printer.tray_z_mm()}},
+            {"max_internal_radius_mm", printer.max_internal_radius_mm()}};
+  json m = {
+      {"id", material.id()},
+      {"tensile_modulus_mpa", material.tensile_modulus_mpa()},
+      {"shear_modulus_mpa", material.shear_modulus_mpa()},
+      {"tensile_strength_mpa", or_null(material.has_tensile_strength_mpa(), material.tensile_strength_mpa())},
+      {"shear_strength_mpa", or_null(material.has_shear_strength_mpa(), material.shear_strength_mpa())},
+      {"slenderness", or_null(material.has_slenderness(), material.slenderness())},
+      {"density_g_cm3", material.density_g_cm3()},
+      {"price_per_kg", or_null(material.has_price_per_kg(), material.price_per_kg())}};
+  return json{{"printer", std::move(p)}, {"material", std::move(m)}};
+}
+
+Result<json> load_json(const v1::Load& load) {
+  constexpr double kDefaultRadiusMm = 5.0;
+  json out = {{"name", load.name()},
+              {"place", nullptr},
+              {"point_mm", nullptr},
+              {"force_n", xyz(load.force_n())},
+              {"radius_mm", load.radius_mm() == 0.0 ? kDefaultRadiusMm : load.radius_mm()}};
+  if (load.has_point_mm()) {
+    out["point_mm"] = xyz(load.point_mm());
+  } else if (const char* place = name_of(load.place()); place != nullptr) {
+    out["place"] = place;
+  } else {
+    return internal_error(fmt::format("load {}: its place is unknown to this worker", load.name()));
+  }
+  return out;
+}
+
+Result<json> options_json(const v1::JobOptions& o) {
+  constexpr double kDefaultDisplacementLimitMm = 0.05;  // epsilon in eq. 6
+  const char* up = name_of(o.up());
+  const char* balance = name_of(o.balance());
+  const char* smooth = name_of(o.smooth());
+  const char* orient = name_of(o.orient());
+  const char* order = name_of(o.order());
+  if (!up || !balance || !smooth || !orient || !order) {
+    return internal_error("an option of the job has a value that is unknown to this worker");
+  }
+  return json{{"up", up},
+              {"balance", balance},
+              {"size_mm", or_null(o.has_size_mm(), o.size_mm())},
+              {"skin_nodes", or_null(o.has_skin_nodes(), o.skin_nodes())},
+              {"internal_nodes", or_null(o.has_internal_nodes(), o.internal_nodes())},
+              {"voxel_mm", or_null(o.has_voxel_mm(), o.voxel_mm())},
+              {"smooth", smooth},
+              {"orient", orient},
+              {"no_optimize", o.no_optimize()},
+              {"order", order},
+              {"displacement_limit_mm",
+               o.has_displacement_limit_mm() ? o.displacement_limit_mm() : kDefaultDisplacementLimitMm},
+              {"seed", o.has_seed() ? o.seed() : std::uint64_t{1}}};
+}
+
+}  // namespace
+
+Result<std::string> job_request_json(const v1::Assignment& assignment, const std::filesystem::path& mesh_path,
+                                     int threads) {
+  const v1::JobSpec& spec = assignment.spec();
+  if (!spec.has_mesh_sha256()) return unsupported("this worker takes meshes only, not frame problem files");
+  if (!spec.warm_start_job_id().empty()) return unsupported("this worker does not build on earlier jobs yet");
+  if (spec.printers_size() == 0 || assignment.printers_size() != spec.printers_size() ||
+      assignment.materials_size() != spec.printers_size()) {
+    return internal_error(
+        fmt::format("the assignment has {} printer and {} material profiles for {} printers",
+                    assignment.printers_size(), assignment.materials_size(), spec.printers_size()));
+  }
+  json printers = json::array();
+  for (int i = 0; i < assignment.printers_size(); ++i) {
+    auto printer = printer_json(assignment.printers(i), assignment.materials(i));
+    if (!printer) return printer.error();
+    printers.push_back(std::move(printer).value());
+  }
+  json loads = json::array();
+  for (const v1::Load& each : spec.loads()) {
+    auto load = load_json(each);
+    if (!load) return load.error();
+    loads.push_back(std::move(load).value());
+  }
+  auto options = options_json(spec.options());
+  if (!options) return options.error();
+  const json request = {{"job_id", assignment.job_id()},
+                        {"mesh_path", mesh_path.string()},
+                        {"mesh_name", spec.mesh_name()},
+                        {"printers", std::move(printers)},
+                        {"loads", std::move(loads)},
+                        {"options", std::move(options).value()},
+                        {"threads", threads}};
+  return request.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace skinframe::agent

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/agent/job_runner.h"
+
+#include <grpcpp/client_context.h>
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <chrono>
+#include <deque>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "worker/agent/artifact_transfer.h"
+#include "worker/agent/assignment.h"
+#include "worker/agent/backoff.h"
+#include "worker/agent/conclusion.h"
+#include "worker/agent/heartbeater.h"
+#include "worker/agent/supervise.h"
+#include "worker/agent/work_folder.h"
+
+namespace skinframe::agent {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::steady_clock;
+
+constexpr std::uintmax_t kMaxOutcomeBytes = 1024 * 1024;
+constexpr std::size_t kLastLogLines = 5;
+constexpr std::size_t kLastLogLineBytes = 300;
+
+// The attempt cannot go on; how the job ends by that.
+Conclusion give_up(v1::Reason reason, std::string detail, bool retryable) {
+  Conclusion out;
+  out.outcome.state = v1::JOB_STATE_FAILED;
+  out.outcome.reason = reason;
+  out.outcome.detail = std::move(detail);
+  out.retryable = retryable;
+  return out;
+}
+
+class Attempt {
+ public:
+  Attempt(const AgentOptions& options, const fs::path& agent_folder, ServerStubs stubs,
+          const v1::Assignment& assignment, std::stop_token worker_stop)
+      : options_(options),
+        agent_folder_(agent_folder),
+        stubs_(stubs),
+        assignment_(assignment),
+        heartbeater_(stubs.worker, assignment, std::move(worker_stop)) {}
+
+  void run() {
+    v1::CompleteRequest completion;
+    const Conclusion end = work(completion);
+    heartbeater_.finish();
+    if (!end.report || heartbeater_.cause() == StopCause::kLeaseLost) {
+      spdlog::warn("job={} dropped: the lease is not ours any more", id());
+      return;
+    }
+    completion.set_job_id(id());
+    completion.set_fencing_token(assignment_.fencing_token());
+    completion.set_state(end.outcome.state);
+    completion.set_reason(end.outcome.reason);
+    completion.set_detail(end.outcome.detail);
+    completion.set_retryable(end.retryable);
+    for (const v1::PrinterResult& printer : end.outcome.printers) *completion.add_printers() = printer;
+    complete(completion);
+  }
+
+ private:
+  const std::string& id() const { return assignment_.job_id(); }
+
+  // Fills in the completion's files.
+  Conclusion work(v1::CompleteRequest& completion) {
+    const auto folder = JobFolder::create(agent_folder_, assignment_.fencing_token());
+    if (!folder) return give_up(v1::REASON_CRASHED, folder.error().message, true);
+    if (auto wrong = prepare(folder->path())) return *std::move(wrong);
+    AttemptEnd end = run_process(folder->path());
+    read_outcome(folder->path() / "outcome.json", end);
+    Conclusion conclusion = conclude(end);
+    if (conclusion.upload && conclusion.report) {
+      if (auto wrong = upload(folder->path() / "out", completion)) return *std::move(wrong);
+    }
+    return conclusion;
+  }
+
+  // How the attempt ended by a transfer that did not come through.
+  Conclusion transfer_failed(const std::string& what, const grpc::Status& status) const {
+    if (heartbeater_.cause() != StopCause::kNone) {
+      AttemptEnd end;
+      end.stop = heartbeater_.cause();
+      return conclude(end);
+    }
+    return give_up(v1::REASON_CRASHED, fmt::format("{}: {}", what, status.error_message()), true);
+  }
+
+  std::optional<Conclusion> prepare(const fs::path& folder) {
+    const fs::path mesh = folder / "mesh";
+    const auto request = job_request_json(assignment_, mesh, options_.threads_per_job);
+    if (!request) {
+      const bool refused = request.error().kind == ErrorKind::kUnsupported;
+      return give_up(refused ? v1::REASON_UNSUPPORTED : v1::REASON_INTERNAL, request.error().message, false);
+    }
+    const grpc::Status fetched = download_artifact(stubs_.artifacts, assignment_.spec().mesh_sha256(), mesh,
+                                                   heartbeater_.stop_token());
+    if (!fetched.ok()) return transfer_failed("the mesh could not be fetched", fetched);
+    std::ofstream out(folder / "job.json");
+    out << *request;
+    out.close();
+    if (!out) return give_up(v1::REASON_CRASHED, "the worker's disk: job.json could not be written", true);
+    return std::nullopt;
+  }
+
+  AttemptEnd run_process(const fs::path& folder) {
+    AttemptEnd end;
+    end.memory_limit_mb = options_.memory_limit_mb;
+    ChildCommand command;
+    command.arguments = {options_.self_executable.string(), "run-job", folder.string()};
+    if (options_.memory_limit_mb > 0) {
+      command.address_space_bytes = static_cast<std::uint64_t>(options_.memory_limit_mb) << 20;
+    }
+    auto child = ChildProcess::start(command);
+    if (!child) {
+      end.exit.exit_code = 127;
+      end.outcome_error = child.error().message;
+      return end;
+    }
+    std::deque<std::string> last_lines;
+    SuperviseOptions supervision;
+    supervision.stop = heartbeater_.stop_token();
+    supervision.on_stdout_line = [&](std::string_view line) { hear(line); };
+    supervision.on_stderr_line = [&](std::string_view line) {
+      spdlog::info("job={} | {}", id(), line);
+      last_lines.emplace_back(line.substr(0, kLastLogLineBytes));
+      if (last_lines.size() > kLastLogLines) last_lines.pop_front();
+    };
+    const Supervised ended = supervise(child.value(), supervision);
+    if (ended.dropped_lines > 0) {
+      spdlog::warn("job={} {} event lines were too long and dropped", id(), ended.dropped_lines);
+    }
+    end.exit = ended.exit;
+    end.stop = heartbeater_.cause();
+    for (const std::string& line : last_lines) {
+      if (!end.last_log_lines.empty()) end.last_log_lines += " / ";
+      end.last_log_lines += line;
+    }
+    end.last_log_lines = printable(std::move(end.last_log_lines));
+    return end;
+  }
+
+  // stderr may hold anything; the API's texts are UTF-8.
+  static std::string printable(std::string text) {
+    for (char& c : text) {
+      if (static_cast<unsigned char>(c) < 0x20 || static_cast<unsigned char>(c) > 0x7E) c = '?';
+    }
+    return text;
+  }
+
+  void hear(std::string_view line) {
+    auto event = parse_event_line(line);
+    if (!event) {
+      spdlog::warn("job={} event line dropped: {}", id(), event.error().message);
+    } else if (auto* progress = std::get_if<v1::JobProgress>(&event.value())) {
+      progress->set_attempt(assignment_.attempt());
+      heartbeater_.add(std::move(*progress));
+    } else {
+      heartbeater_.add(std::get<v1::PrinterResult>(std::move(event).value()));
+    }
+  }
+
+  static void read_outcome(const fs::path& path, AttemptEnd& end) {
+    std::error_code error;
+    const std::uintmax_t size = fs::file_size(path, error);
+    if (error) return;  // none was written
+    if (size > kMaxOutcomeBytes) {
+      end.outcome_error = "outcome.json is larger than 1 MiB";
+      return;
+    }
+    std::ifstream in(path, std::ios::binary);
+    std::stringstream text;
+    text << in.rdbuf();
+    auto outcome = parse_outcome(text.str());
+    if (outcome) {
+      end.outcome = std::move(outcome).value();
+    } else {
+      end.outcome_error = outcome.error().message;
+    }
+  }
+
+  std::optional<Conclusion> upload(const fs::path& out, v1::CompleteRequest& completion) {
+    const auto files = list_result_files(out);
+    if (!files) return give_up(v1::REASON_INTERNAL, files.error().message, false);
+    for (const fs::path& relative : *files) {
+      const auto digest = digest_file(out / relative);
+      if (!digest) return give_up(v1::REASON_CRASHED, digest.error().message, true);
+      if (digest->size_bytes == 0) continue;  // the store holds no empty artifact
+      const grpc::Status sent =
+          upload_artifact(stubs_.artifacts, out / relative, *digest, heartbeater_.stop_token());
+      if (!sent.ok()) {
+        completion.clear_files();
+        return transfer_failed(fmt::format("result {} could not be uploaded", relative.string()), sent);
+      }
+      v1::ResultFile* file = completion.add_files();
+      file->set_path(relative.generic_string());
+      file->set_sha256(digest->sha256);
+      file->set_size_bytes(digest->size_bytes);
+    }
+    return std::nullopt;
+  }
+
+  void complete(const v1::CompleteRequest& completion) {
+    Backoff backoff(std::chrono::milliseconds(100), std::chrono::milliseconds(1000), std::random_device{}());
+    const auto expiry = heartbeater_.lease_expiry();
+    while (true) {
+      grpc::ClientContext context;
+      context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(5));
+      v1::CompleteResponse response;
+      const grpc::Status status = stubs_.worker.Complete(&context, completion, &response);
+      if (status.ok()) {
+        spdlog::info("job={} attempt {} ended: {} {} {}", id(), assignment_.attempt(),
+                     v1::JobState_Name(completion.state()), v1::Reason_Name(completion.reason()),
+                     completion.detail());
+        return;
+      }
+      const bool again = status.error_code() == grpc::StatusCode::UNAVAILABLE ||
+                         status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED;
+      const auto delay = backoff.next();
+      if (!again || steady_clock::now() + delay >= expiry) {
+        spdlog::warn("job={} the completion was not accepted: {}", id(), status.error_message());
+        return;
+      }
+      wait_unless_stopped(std::stop_token(), delay);  // bounded by the lease, not by the agent's end
+    }
+  }
+
+  const AgentOptions& options_;
+  const fs::path& agent_folder_;
+  ServerStubs stubs_;
+  const v1::Assignment& assignment_;
+  Heartbeater heartbeater_;
+};
+
+}  // namespace
+
+void run_assignment(const AgentOptions& options, const fs::path& agent_folder, ServerStubs stubs,
+                    const v1::Assignment& assignment, std::stop_token worker_stop) {
+  spdlog::info("job={} attempt {} begins: {} for {} printers", assignment.job_id(), assignment.attempt(),
+               assignment.spec().mesh_name(), assignment.spec().printers_size());
+  Attempt(options, agent_folder, stubs, assignment, std::move(worker_stop)).run();
+}
+
+}  // namespace skinframe::agent

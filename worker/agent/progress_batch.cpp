@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/agent/progress_batch.h"
+
+#include <utility>
+
+namespace skinframe::agent {
+
+void ProgressBatch::add(v1::JobProgress progress) {
+  last_ = progress;
+  const bool newer_tick = !progress_.empty() && progress_.back().printer_id() == progress.printer_id() &&
+                          progress_.back().stage() == progress.stage() &&
+                          progress_.back().iteration() == progress.iteration();
+  if (newer_tick) {
+    progress_.back() = std::move(progress);
+  } else {
+    progress_.push_back(std::move(progress));
+    trim();
+  }
+}
+
+void ProgressBatch::add(v1::PrinterResult printer) { printers_.push_back(std::move(printer)); }
+
+void ProgressBatch::take(v1::HeartbeatRequest& request) {
+  if (empty() && last_) *request.add_progress() = *last_;
+  for (auto& progress : progress_) *request.add_progress() = std::move(progress);
+  for (auto& printer : printers_) *request.add_printers() = std::move(printer);
+  progress_.clear();
+  printers_.clear();
+}
+
+void ProgressBatch::give_back(const v1::HeartbeatRequest& request) {
+  progress_.insert(progress_.begin(), request.progress().begin(), request.progress().end());
+  printers_.insert(printers_.begin(), request.printers().begin(), request.printers().end());
+  trim();
+}
+
+void ProgressBatch::trim() {
+  while (progress_.size() > kMaxProgress) progress_.pop_front();
+}
+
+}  // namespace skinframe::agent
