@@ -25,8 +25,8 @@ Polygon2 contact_hull(const TriangleMesh& mesh, double tolerance_mm = kContactTo
 // Convex hull (monotone chain): counter-clockwise, without collinear points.
 Polygon2 convex_hull(std::vector<Eigen::Vector2d> points);
 
-// Distance of `point` to the boundary of a convex counter-clockwise polygon: positive inside, negative outside.
-// A polygon of one or two points has no inside: minus the distance to it.
+// Distance of `point` to the boundary of a convex counter-clockwise polygon: positive inside, negative
+// outside. A polygon of one or two points has no inside: minus the distance to it.
 double signed_margin_mm(const Polygon2& hull, const Eigen::Vector2d& point);
 
 struct Contact {

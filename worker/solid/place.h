@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Size and attitude of a mesh on the plate. Pure functions; each is a similarity, so closedness and
-// orientation stay. Order of the pipeline: scale_to_largest_edge, turn_up, repair, put_on_plate.
+// orientation stay. Order of the pipeline: scale_to_largest_edge, turn_up, put_on_plate, repair (which rounds
+// to float, finest near the origin).
 #pragma once
 
 #include "worker/mesh/triangle_mesh.h"

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/solid/fill_holes.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+
+#include "worker/solid/half_edges.h"
+#include "worker/solid/hole_patch.h"
+
+namespace skinframe {
+namespace {
+
+Opening make_opening(const TriangleMesh& mesh, std::vector<int> loop) {
+  Opening opening;
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Eigen::Vector3d& p = mesh.vertices[loop[i]];
+    opening.length += (mesh.vertices[loop[(i + 1) % loop.size()]] - p).norm();
+    opening.middle += p / static_cast<double>(loop.size());
+  }
+  opening.loop = std::move(loop);
+  return opening;
+}
+
+// Each edge of the loop once in the loop's sense, each inner edge twice and new to the mesh, no vertex left
+// over.
+bool fits(const TriangleMesh& mesh, const std::vector<int>& loop,
+          const std::vector<std::array<int, 3>>& patch) {
+  const int n = static_cast<int>(loop.size());
+  if (static_cast<int>(patch.size()) != n - 2) return false;
+  const EdgeTable existing(mesh);
+  std::map<std::pair<int, int>, int> uses;
+  for (const auto& t : patch) {
+    for (int k = 0; k < 3; ++k) {
+      if (++uses[{t[k], t[(k + 1) % 3]}] > 1) return false;
+    }
+  }
+  for (const auto& [edge, count] : uses) {
+    const auto [a, b] = edge;
+    if ((a + 1) % n == b) continue;
+    if (uses.count({b, a}) == 0 || existing.contains(loop[a], loop[b])) return false;
+  }
+  return true;
+}
+
+void fan(TriangleMesh& mesh, const Opening& opening) {
+  const int middle = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.push_back(opening.middle);
+  for (std::size_t i = 0; i < opening.loop.size(); ++i) {
+    mesh.triangles.push_back({opening.loop[i], opening.loop[(i + 1) % opening.loop.size()], middle});
+  }
+}
+
+}  // namespace
+
+std::vector<Opening> find_openings(const TriangleMesh& mesh) {
+  const EdgeTable edges(mesh);
+  std::vector<int> open;            // boundary half-edges
+  std::multimap<int, int> leaving;  // filling sense: from a boundary half-edge's target to its origin
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    if (edges.half_edges(e).size() == 1) open.push_back(edges.half_edges(e)[0]);
+  }
+  std::sort(open.begin(), open.end());
+  for (const int h : open) leaving.emplace(target_of(mesh, h), origin_of(mesh, h));
+  std::vector<Opening> openings;
+  for (const int h : open) {
+    std::vector<int> path{target_of(mesh, h)};
+    for (auto step = leaving.find(path.back()); step != leaving.end(); step = leaving.find(path.back())) {
+      const int to = step->second;
+      leaving.erase(step);
+      const auto before = std::find(path.begin(), path.end(), to);
+      if (before == path.end()) {
+        path.push_back(to);
+        continue;
+      }
+      openings.push_back(make_opening(mesh, {before, path.end()}));
+      path.erase(before + 1, path.end());
+    }
+  }
+  return openings;
+}
+
+void fill_opening(TriangleMesh& mesh, const Opening& opening) {
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(opening.loop.size());
+  for (const int v : opening.loop) points.push_back(mesh.vertices[v]);
+  const auto patch = triangulate_closed_polyline(points);
+  if (!fits(mesh, opening.loop, patch)) return fan(mesh, opening);
+  for (const auto& t : patch)
+    mesh.triangles.push_back({opening.loop[t[0]], opening.loop[t[1]], opening.loop[t[2]]});
+}
+
+}  // namespace skinframe

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Openings of a surface and their filling. Internal to the room. Expects consistent orientation and at most
+// two triangles an edge.
+#pragma once
+
+#include <vector>
+
+#include "worker/mesh/triangle_mesh.h"
+
+namespace skinframe {
+
+struct Opening {
+  std::vector<int> loop;  // vertices in the sense in which filling triangles pass the edges
+  double length = 0;      // of the boundary, in the mesh's unit
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  // mean of the loop's vertices
+};
+
+// In order of the lowest half-edge. A loop that passes a vertex twice is split there into simple loops.
+std::vector<Opening> find_openings(const TriangleMesh& mesh);
+
+// Adds triangles (Liepa 2003, the least worst dihedral angle, then area) that close the opening; where their
+// inner edges would meet edges that exist, a fan from the middle of the loop instead.
+void fill_opening(TriangleMesh& mesh, const Opening& opening);
+
+}  // namespace skinframe
