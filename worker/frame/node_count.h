@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How long the edges of the skin triangulation may be, and so how many skin nodes there are.
 //
-// Finger rule: a finger of force f on a skin triangle must not bend it by more than epsilon. The skin as a plate of
-// thickness h_S clamped on the triangle's inscribed circle (the paper's own formula ignores bending and gives 370 mm):
+// Finger rule: a finger of force f on a skin triangle must not bend it by more than epsilon. The skin as a
+// plate of thickness h_S clamped on the triangle's inscribed circle (the paper's own formula ignores bending
+// and gives 370 mm):
 //     a <= sqrt(12) sqrt(16 pi B epsilon / f),   B = gamma h_S^3 / (12 (1 - nu^2))
 // Chord rule: the chord of an edge must not leave M1 by more than h_S:
 //     a(x) = sqrt(8 R(x) h_S),   R = least radius of normal curvature, smoothed over about the edge's length.
@@ -29,10 +30,13 @@ double finger_edge_mm(const SkinPlate& plate, double skin_thickness_mm);
 constexpr int kMinSkinNodes = 12;
 constexpr int kMaxSkinNodes = 20000;
 
-// The wanted edge length at every vertex of M1, within [kFloor h_S, a_finger], graded so that it changes by at most
-// kGrading mm a mm. The floor keeps creases and relief from asking for what the skin cannot feel.
+// The wanted edge length at every vertex of M1, within [kEdgeFloorInThicknesses h_S, a_finger]. Curvature is
+// smoothed over kSmoothingInThicknesses h_S, about half of a short edge, and the floor keeps creases and
+// relief from asking for what the skin cannot feel: there chords do leave M1 by more than h_S. Lengths change
+// by at most kEdgeGrading mm a mm.
 constexpr double kEdgeFloorInThicknesses = 5.0;
-constexpr double kEdgeGrading = 0.4;
+constexpr double kSmoothingInThicknesses = 4.0;
+constexpr double kEdgeGrading = 0.6;
 std::vector<double> edge_length_field(const TriangleMesh& inner_surface, double finger_edge_mm,
                                       double skin_thickness_mm);
 

@@ -1,18 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The initial frame (Wang et al. 2013, section 4.2): skin nodes on M1 with their triangulation, evenly spread internal
-// nodes, nearest-neighbour struts that stay inside M1.
+// The initial frame (Wang et al. 2013, section 4.2): skin nodes on M1 with their triangulation, evenly spread
+// internal nodes, nearest-neighbour struts that stay inside M1.
 //
-// Skin nodes: M1 is collapsed to the wanted count, then relaxed (edge flips, weighted Lloyd, projection). The base
-// contact is kept: nodes there stay there, its rim is followed, and three nodes not in line stand on it at least.
-// Internal nodes: Lloyd on the voxels deeper than a margin below M1. Default count: those that the spacing of the skin
-// edges asks for, at most 0.35 of the skin nodes (the paper's frames have 0.12 to 0.44).
+// Skin nodes: M1 is collapsed to the wanted count, then relaxed (edge flips, weighted Lloyd, projection). The
+// base contact is kept: nodes there stay there, its rim is followed, and three nodes not in line stand on it
+// at least. Internal nodes: Lloyd on the voxels deeper than a margin below M1. Default count: those that the
+// spacing of the skin edges asks for, at most 0.35 of the skin nodes (the paper's frames have 0.12 to 0.44).
 // Internal struts: from each internal node to its nearest nodes, where the strut with the body radius fits
 // (required_depth_mm in convex_region.h). A strut that does not fit is not made.
-// Pieces of M1: each is a component of the triangulation. Pieces too small for a triangulation, and pieces that no strut
-// through the solid neck can join to the largest, stay hollow without a frame; a warning says so.
+// Pieces of M1: each is a component of the triangulation. Pieces too small for a triangulation, and pieces
+// that no strut through the solid neck can join to the largest, stay hollow without a frame; a warning says
+// so.
 //
 // Guarantees:
-//  1. frame.h's invariants; the skin triangulation is closed, edge-manifold, outward, of the genus of M1's kept pieces.
+//  1. frame.h's invariants; the skin triangulation is closed, edge-manifold, outward, of the genus of M1's
+//  kept pieces.
 //  2. As many skin nodes as asked for, unless the topology of M1 needs more (then a warning).
 //  3. The frame is connected: every node has a path of struts to every contact node. No isolated node.
 //  4. Same input and seed, same frame, at any thread count.
@@ -30,19 +32,20 @@
 namespace skinframe {
 
 struct FrameOptions {
-  std::optional<int> skin_nodes;       // [kMinSkinNodes, kMaxSkinNodes]; default: node_count.h
-  std::optional<int> internal_nodes;   // [0, kMaxSkinNodes]; default above
-  SkinPlate plate;                     // for the finger rule
-  double strut_radius_mm = 0.5;        // eta: struts are tested against M1 with this radius, > 0
-  double contact_tolerance_mm = 1.0;   // contact = M within this of its lowest plane, > 0
-  int neighbours = 9;                  // nearest nodes tried from each internal node, [1, 64]
+  std::optional<int> skin_nodes;      // [kMinSkinNodes, kMaxSkinNodes]; default: node_count.h
+  std::optional<int> internal_nodes;  // [0, kMaxSkinNodes]; default above
+  SkinPlate plate;                    // for the finger rule
+  double strut_radius_mm = 0.5;       // eta: struts are tested against M1 with this radius, > 0
+  double contact_tolerance_mm = 1.0;  // contact = M within this of its lowest plane, > 0
+  int neighbours = 9;                 // nearest nodes tried from each internal node, [1, 64]
   Status validate() const;
 };
 
 struct SampledFrame {
   Frame frame;
-  std::vector<int> contact_nodes;      // skin nodes above the base contact (widened when it held fewer than three)
-  int skin_nodes_requested = 0;        // by the option or by the count rule
+  std::vector<int>
+      contact_nodes;             // skin nodes above the base contact (widened when it held fewer than three)
+  int skin_nodes_requested = 0;  // by the option or by the count rule
   double finger_edge_mm = 0.0;
   double mean_skin_edge_mm = 0.0;
   double worst_skin_strut_chord_mm = 0.0;  // furthest that the axis of a skin strut stands from M1
@@ -51,8 +54,8 @@ struct SampledFrame {
   std::vector<std::string> warnings;
 };
 
-// Errors: kInvalidInput when M1 is empty (the body is thinner than two skins everywhere), when an option is out of
-// range, or when the count rule asks for more than kMaxSkinNodes; kCancelled.
+// Errors: kInvalidInput when M1 is empty (the body is thinner than two skins everywhere), when an option is
+// out of range, or when the count rule asks for more than kMaxSkinNodes; kCancelled.
 Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options, RunContext& context);
 
 }  // namespace skinframe

@@ -54,7 +54,8 @@ Result<Skin> build(const TriangleMesh& mesh, const SkinOptions& options, const R
   if (!voxel) return voxel.error();
 
   auto grids = std::make_shared<DistanceGrids>();
-  const double extent = bounding_box(mesh).extent().maxCoeff();
+  const BoundingBox box = bounding_box(mesh);
+  const double extent = box.extent().maxCoeff();
   grids->voxel_mm = *voxel;
   grids->coarse_voxel_mm = std::max(*voxel, extent / kCoarseCellsAcross);
   const double inner_voxels = std::ceil(options.thickness_mm / *voxel) + kSpareInnerVoxels;
@@ -68,6 +69,7 @@ Result<Skin> build(const TriangleMesh& mesh, const SkinOptions& options, const R
   Skin skin;
   skin.thickness_mm = options.thickness_mm;
   skin.voxel_mm = *voxel;
+  skin.plate_z_mm = box.min.z();
   const double volume = signed_volume(mesh);
   Eigen::Vector3d moment = volume * volume_centroid(mesh);
   const TriangleMesh cavity = iso_surface(*grids->fine, -options.thickness_mm);

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/frame/triangulate_piece.h"
+
+#include <CGAL/AABB_face_graph_triangle_primitive.h>
+#include <CGAL/AABB_traits.h>
+#include <CGAL/AABB_tree.h>
+#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/boost/graph/Euler_operations.h>
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "worker/frame/half_edge.h"
+#include "worker/frame/point_tree.h"
+
+namespace skinframe {
+namespace {
+
+using Vertex = HalfEdgeMesh::Vertex_index;
+using Primitive = CGAL::AABB_face_graph_triangle_primitive<HalfEdgeMesh>;
+using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+
+constexpr int kRounds = 60;
+constexpr int kRoundsBeforeRim = 10;     // first even, then on the rim
+constexpr double kOntoRim = 0.35;        // in wanted edges: any node this near to the rim goes onto it
+constexpr double kContactOntoRim = 0.6;  // the contact's outermost nodes come from further
+
+// The rim of the base contact: where edges of M1 cross its height.
+std::vector<Eigen::Vector3d> rim_points(const HalfEdgeMesh& mesh, double contact_z) {
+  std::vector<Eigen::Vector3d> rim;
+  for (auto e : mesh.edges()) {
+    const Eigen::Vector3d a = to_eigen(mesh.point(mesh.vertex(e, 0))),
+                          b = to_eigen(mesh.point(mesh.vertex(e, 1)));
+    if ((a.z() <= contact_z) == (b.z() <= contact_z)) continue;
+    rim.push_back(a + (contact_z - a.z()) / (b.z() - a.z()) * (b - a));
+  }
+  return rim;
+}
+
+double angle_at(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r) {
+  return std::atan2((q - p).cross(r - p).norm(), (q - p).dot(r - p));
+}
+
+// Flips edges whose opposite angles sum to more than pi, where that neither folds the surface nor doubles an
+// edge.
+void flip_to_delaunay(HalfEdgeMesh& mesh) {
+  for (int sweep = 0; sweep < 5; ++sweep) {
+    bool changed = false;
+    for (auto e : mesh.edges()) {
+      const auto h = mesh.halfedge(e), o = mesh.opposite(h);
+      const Vertex va = mesh.source(h), vb = mesh.target(h);
+      const Vertex vc = mesh.target(mesh.next(h)), vd = mesh.target(mesh.next(o));
+      if (vc == vd || mesh.halfedge(vc, vd).is_valid()) continue;
+      if (mesh.degree(va) <= 3 || mesh.degree(vb) <= 3) continue;
+      const Eigen::Vector3d a = to_eigen(mesh.point(va)), b = to_eigen(mesh.point(vb)),
+                            c = to_eigen(mesh.point(vc)), d = to_eigen(mesh.point(vd));
+      if (angle_at(c, a, b) + angle_at(d, a, b) <= std::numbers::pi + 1e-3) continue;
+      const Eigen::Vector3d left = (b - a).cross(c - a), right = (d - a).cross(b - a), mean = left + right;
+      const Eigen::Vector3d near_b = (d - c).cross(b - c), near_a = (a - c).cross(d - c);
+      const double before = left.dot(right) / (left.norm() * right.norm() + 1e-30);
+      const double after = near_a.dot(near_b) / (near_a.norm() * near_b.norm() + 1e-30);
+      if (after < std::min(0.3, before - 1e-6) || !(near_a.dot(mean) * near_b.dot(mean) > 0.0)) continue;
+      CGAL::Euler::flip_edge(h, mesh);
+      changed = true;
+    }
+    if (!changed) return;
+  }
+}
+
+// The weighted centroid of the triangles about v, moved back into the tangent plane.
+Eigen::Vector3d lloyd_step(const HalfEdgeMesh& mesh, const NodeTraitsMap& traits, Vertex v) {
+  const Eigen::Vector3d p = to_eigen(mesh.point(v));
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero(), normal = Eigen::Vector3d::Zero();
+  double weight = 0.0;
+  for (auto h : CGAL::halfedges_around_target(v, mesh)) {
+    const Vertex vb = mesh.target(mesh.next(h)), vc = mesh.source(h);
+    const Eigen::Vector3d b = to_eigen(mesh.point(vb)), c = to_eigen(mesh.point(vc));
+    const Eigen::Vector3d cross = (b - p).cross(c - p);
+    const double a = (traits[v].edge_length_mm + traits[vb].edge_length_mm + traits[vc].edge_length_mm) / 3.0;
+    const double w = 0.5 * cross.norm() / (a * a * a * a);
+    sum += w * (p + b + c) / 3.0;
+    weight += w;
+    normal += cross;
+  }
+  if (!(weight > 0.0) || !(normal.norm() > 0.0)) return p;
+  normal.normalize();
+  const Eigen::Vector3d step = sum / weight - p;
+  return p + step - step.dot(normal) * normal;
+}
+
+class Relaxation {
+ public:
+  Relaxation(const HalfEdgeMesh& surface, const std::vector<double>& edge_length, double contact_z)
+      : surface_(surface),
+        edge_length_(edge_length),
+        contact_z_(contact_z),
+        rim_(rim_points(surface, contact_z)) {
+    tree_.insert(faces(surface).begin(), faces(surface).end(), surface);
+    tree_.accelerate_distance_queries();
+  }
+
+  void round(HalfEdgeMesh& mesh, NodeTraitsMap traits, bool onto_rim) const {
+    flip_to_delaunay(mesh);
+    std::vector<Eigen::Vector3d> moved(mesh.num_vertices());
+    for (auto v : mesh.vertices()) moved[v] = lloyd_step(mesh, traits, v);
+    for (auto v : mesh.vertices()) {
+      if (!traits[v].pinned) project(mesh, traits, v, moved[v]);
+    }
+    if (!onto_rim || rim_.empty()) return;
+    for (auto v : mesh.vertices()) {
+      if (!traits[v].pinned) snap(mesh, traits, v);
+    }
+  }
+
+ private:
+  void project(HalfEdgeMesh& mesh, NodeTraitsMap traits, Vertex v, const Eigen::Vector3d& p) const {
+    const auto [point, face] = tree_.closest_point_and_primitive(to_cgal(p));
+    mesh.point(v) = point;
+    double sum = 0.0;
+    for (auto w : surface_.vertices_around_face(surface_.halfedge(face))) sum += edge_length_[w];
+    traits[v].edge_length_mm = sum / 3.0;
+  }
+
+  void snap(HalfEdgeMesh& mesh, NodeTraitsMap traits, Vertex v) const {
+    const Eigen::Vector3d p = to_eigen(mesh.point(v)), q = rim_.point(rim_.nearest(p));
+    const double distance = (q - p).norm() / traits[v].edge_length_mm;
+    if (distance > kContactOntoRim) return;
+    const auto in_contact = [&](Vertex w) { return mesh.point(w).z() <= contact_z_ + 1e-6; };
+    bool outermost = in_contact(v);
+    if (outermost) {
+      outermost = false;
+      for (auto w : mesh.vertices_around_target(mesh.halfedge(v))) outermost = outermost || !in_contact(w);
+    }
+    if (distance <= kOntoRim || outermost) mesh.point(v) = to_cgal(q);
+  }
+
+  const HalfEdgeMesh& surface_;
+  const std::vector<double>& edge_length_;
+  double contact_z_;
+  PointTree rim_;
+  Tree tree_;
+};
+
+// Vertices that several umbrellas share become several; `origin` says which vertex of the piece each was.
+Result<HalfEdgeMesh> to_half_edges(const TriangleMesh& piece, std::vector<int>& origin) {
+  namespace pmp = CGAL::Polygon_mesh_processing;
+  struct Recorder : pmp::Default_orientation_visitor {
+    explicit Recorder(std::vector<int>* list) : origins(list) {}
+    void duplicated_vertex(std::size_t first, std::size_t copy) {
+      if (origins->size() <= copy) origins->resize(copy + 1, 0);
+      (*origins)[copy] = (*origins)[first];
+    }
+    std::vector<int>* origins;
+  };
+  std::vector<Kernel::Point_3> points;
+  origin.resize(piece.vertices.size());
+  for (std::size_t i = 0; i < piece.vertices.size(); ++i) {
+    points.push_back(to_cgal(piece.vertices[i]));
+    origin[i] = static_cast<int>(i);
+  }
+  std::vector<std::array<std::size_t, 3>> triangles;
+  for (const auto& t : piece.triangles) {
+    triangles.push_back(
+        {static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]), static_cast<std::size_t>(t[2])});
+  }
+  if (!pmp::is_polygon_soup_a_polygon_mesh(triangles)) {
+    pmp::orient_polygon_soup(points, triangles, CGAL::parameters::visitor(Recorder(&origin)));
+    if (!pmp::is_polygon_soup_a_polygon_mesh(triangles))
+      return internal_error("a piece of M1 is not a manifold");
+  }
+  HalfEdgeMesh mesh;
+  pmp::polygon_soup_to_polygon_mesh(points, triangles, mesh);
+  if (!CGAL::is_closed(mesh) || mesh.number_of_vertices() != origin.size()) {
+    return internal_error("a piece of M1 is not closed");
+  }
+  return mesh;
+}
+
+TriangleMesh to_triangles(const HalfEdgeMesh& mesh) {
+  TriangleMesh result;
+  for (auto v : mesh.vertices()) result.vertices.push_back(to_eigen(mesh.point(v)));
+  for (auto f : mesh.faces()) {
+    const auto h = mesh.halfedge(f);
+    result.triangles.push_back({static_cast<int>(mesh.source(h)), static_cast<int>(mesh.target(h)),
+                                static_cast<int>(mesh.target(mesh.next(h)))});
+  }
+  return result;
+}
+
+}  // namespace
+
+Result<TriangleMesh> triangulate_piece(const TriangleMesh& piece, const PieceSampling& sampling,
+                                       const RunContext& context) {
+  try {
+    std::vector<int> origin;
+    auto surface = to_half_edges(piece, origin);
+    if (!surface) return surface.error();
+    std::vector<double> edge_length(origin.size());
+    for (std::size_t i = 0; i < origin.size(); ++i) edge_length[i] = sampling.edge_length_mm[origin[i]];
+
+    HalfEdgeMesh mesh = *surface;
+    NodeTraitsMap traits = mesh.add_property_map<Vertex, NodeTraits>("v:traits").first;
+    for (auto v : mesh.vertices()) traits[v].edge_length_mm = edge_length[v];
+    for (int pin : sampling.pins) traits[Vertex(pin)].pinned = true;
+    collapse_to_count(mesh, traits, sampling.nodes);
+
+    const Relaxation relaxation(*surface, edge_length, sampling.contact_z_mm);
+    for (int round = 0; round < kRounds; ++round) {
+      if (context.cancelled()) return cancelled_error();
+      relaxation.round(mesh, traits, round >= kRoundsBeforeRim);
+    }
+    flip_to_delaunay(mesh);
+    return to_triangles(mesh);
+  } catch (const std::exception& e) {
+    return internal_error(fmt::format("the skin nodes could not be placed: {}", e.what()));
+  }
+}
+
+}  // namespace skinframe

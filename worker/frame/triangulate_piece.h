@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One piece of M1 with some 100 000 triangles becomes a triangulation of a few hundred skin nodes.
+//
+// Collapse of the edge that is shortest against the wanted length, down to the count; then rounds of edge
+// flips (Delaunay), weighted Lloyd steps (a node goes to the centroid of its triangles, weighted by area /
+// a^4: the density whose centroidal tessellation has edges of length a) and projection to M1. Neither step
+// changes the topology, so the result is closed and edge-manifold as the piece is, with its genus. An
+// unconstrained clustering dual was not (m).
+#pragma once
+
+#include <vector>
+
+#include "worker/mesh/triangle_mesh.h"
+#include "worker/run/run_context.h"
+
+namespace skinframe {
+
+struct PieceSampling {
+  std::vector<double> edge_length_mm;  // wanted, one a vertex of the piece
+  int nodes = 0;                       // wanted count, >= 4
+  std::vector<int> pins;               // vertices of the piece that stay where they are and stay nodes
+  double contact_z_mm = 0.0;  // the piece's surface at or below is base contact, whose rim nodes follow
+};
+
+// The count is met exactly unless the piece's topology or its pins need more nodes.
+Result<TriangleMesh> triangulate_piece(const TriangleMesh& piece, const PieceSampling& sampling,
+                                       const RunContext& context);
+
+}  // namespace skinframe
