@@ -74,9 +74,9 @@ struct OptimizeOptions {
 
 enum class Termination {
   kOptimal,         // every stage ended at its optimum (a local one for topology and geometry)
-  kInfeasible,      // constraints cannot hold: violated_constraint says which; radii are at the best reachable
-  kIterationLimit,  // feasible, but some interior point stopped before its tolerance
-  kStalled,         // no feasible frame found, and none proven impossible
+  kInfeasible,      // no frame keeps the constraints: violated_constraint says which, detail whether that is proven or
+                    // the best reachable is merely a local optimum; radii are at the best reachable
+  kIterationLimit,  // feasible, but the last sizing stopped before its tolerance
 };
 
 const char* to_string(Termination termination);

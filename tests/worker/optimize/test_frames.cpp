@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/worker/optimize/test_frames.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <random>
+#include <set>
+
+namespace skinframe::testing {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kBaseCut = -0.75;  // of the vertical half axis: below it the egg is flat
+
+// The icosahedron's faces divided into frequency^2 triangles each, pushed to the unit sphere.
+void geodesic(int frequency, Frame& frame) {
+  const double g = std::numbers::phi;
+  const Vector3d corners[12] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
+                                {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
+  const int faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                            {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                            {3, 8, 9},  {4, 9, 5},  {2, 4, 11},  {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+  std::map<std::array<long, 3>, int> known;
+  const auto node = [&](const Vector3d& p) {
+    const std::array<long, 3> key{std::lround(p.x() * 1e6), std::lround(p.y() * 1e6), std::lround(p.z() * 1e6)};
+    const auto [at, added] = known.emplace(key, static_cast<int>(frame.nodes_mm.size()));
+    if (added) frame.nodes_mm.push_back(p.normalized());
+    return at->second;
+  };
+  for (const auto& face : faces) {
+    const Vector3d &a = corners[face[0]], &b = corners[face[1]], &c = corners[face[2]];
+    const auto grid = [&](int i, int j) { return node(a + (b - a) * i / frequency + (c - a) * j / frequency); };
+    for (int i = 0; i < frequency; ++i)
+      for (int j = 0; i + j < frequency; ++j) {
+        frame.skin_triangles.push_back({grid(i, j), grid(i + 1, j), grid(i, j + 1)});
+        if (i + j + 1 < frequency) frame.skin_triangles.push_back({grid(i + 1, j), grid(i + 1, j + 1), grid(i, j + 1)});
+      }
+  }
+}
+
+void add_skin_struts(Frame& frame) {
+  std::set<std::pair<int, int>> edges;
+  for (const auto& t : frame.skin_triangles)
+    for (int i = 0; i < 3; ++i) edges.insert(std::minmax(t[i], t[(i + 1) % 3]));
+  for (const auto& [a, b] : edges) frame.struts.push_back({a, b, true});
+}
+
+// Each point is the one of a few candidates farthest from the points before it.
+void add_internal_nodes(Frame& frame, int count, const Vector3d& half_axes, double centre_z) {
+  std::mt19937 generator(7);
+  const auto uniform = [&] { return static_cast<double>(generator()) / 4294967296.0; };
+  const auto inside = [&](const Vector3d& p) {
+    return ((p - Vector3d(0, 0, centre_z)).array() / (0.9 * half_axes.array())).square().sum() < 1 && p.z() > 3;
+  };
+  const std::size_t skin = frame.nodes_mm.size();
+  for (int i = 0; i < count; ++i) {
+    Vector3d best = Vector3d::Zero();
+    double farthest = -1;
+    for (int candidates = 0; candidates < 12;) {
+      const Vector3d p((2 * uniform() - 1) * half_axes.x(), (2 * uniform() - 1) * half_axes.y(),
+                       centre_z + (2 * uniform() - 1) * half_axes.z());
+      if (!inside(p)) continue;
+      ++candidates;
+      double nearest = 1e30;
+      for (std::size_t k = skin; k < frame.nodes_mm.size(); ++k)
+        nearest = std::min(nearest, (frame.nodes_mm[k] - p).norm());
+      if (nearest > farthest) farthest = nearest, best = p;
+    }
+    frame.nodes_mm.push_back(best);
+  }
+}
+
+void add_internal_struts(Frame& frame, int neighbours) {
+  std::set<std::pair<int, int>> known;
+  for (const Strut& strut : frame.struts) known.insert(std::minmax(strut.a, strut.b));
+  const int n = static_cast<int>(frame.nodes_mm.size());
+  for (int i = frame.skin_node_count; i < n; ++i) {
+    std::vector<std::pair<double, int>> others;
+    for (int k = 0; k < n; ++k)
+      if (k != i) others.emplace_back((frame.nodes_mm[i] - frame.nodes_mm[k]).norm(), k);
+    std::sort(others.begin(), others.end());
+    for (int q = 0; q < neighbours && q < static_cast<int>(others.size()); ++q)
+      if (known.insert(std::minmax(i, others[q].second)).second) frame.struts.push_back({i, others[q].second, false});
+  }
+}
+
+void support(FrameProblem& problem) {
+  const auto& nodes = problem.frame.nodes_mm;
+  problem.fixed.assign(nodes.size(), {false, false, false});
+  int central = -1, outer = -1;
+  for (int i = 0; i < problem.frame.skin_node_count; ++i) {
+    if (nodes[i].z() > 1e-9) continue;
+    problem.fixed[i][2] = true;
+    if (central < 0 || nodes[i].norm() < nodes[central].norm()) central = i;
+    if (outer < 0 || nodes[i].x() > nodes[outer].x()) outer = i;
+  }
+  problem.fixed[central] = {true, true, true};
+  problem.fixed[outer][1] = true;
+}
+
+}  // namespace
+
+Material pa_plastic() { return {"pa", 1586, 1387, 43, 48, 60, 1.15}; }
+
+FrameProblem make_egg(const Egg& egg) {
+  FrameProblem problem;
+  Frame& frame = problem.frame;
+  geodesic(egg.frequency, frame);
+  frame.skin_node_count = static_cast<int>(frame.nodes_mm.size());
+  add_skin_struts(frame);
+  const Vector3d half_axes = egg.height_mm / (1 - kBaseCut) * Vector3d(0.58, 0.45, 1);
+  const double centre = -kBaseCut * half_axes.z();
+  for (Vector3d& p : frame.nodes_mm) {
+    p = p.cwiseProduct(half_axes);
+    p.z() = std::max(p.z() + centre, 0.0);
+  }
+  add_internal_nodes(frame, egg.internal_nodes, half_axes, centre);
+  add_internal_struts(frame, egg.neighbours);
+
+  problem.material = pa_plastic();
+  for (const Strut& strut : frame.struts) problem.bounds.push_back({0.5, strut.is_skin ? 1.0 : 5.0});
+  support(problem);
+  problem.displacement_limit_mm = 0.05;
+  const std::size_t nodes = frame.nodes_mm.size();
+  problem.skin_weight_n.assign(nodes, 0);
+  for (const auto& t : frame.skin_triangles) {
+    const Vector3d &a = frame.nodes_mm[t[0]], &b = frame.nodes_mm[t[1]], &c = frame.nodes_mm[t[2]];
+    const double weight = 0.5 * (b - a).cross(c - a).norm() * egg.skin_thickness_mm * problem.material.weight_density_n_mm3();
+    for (int i : t) problem.skin_weight_n[i] += weight / 3;
+    problem.skin_mass.centroid_mm += weight * (a + b + c) / 3;
+    problem.skin_mass.weight_n += weight;
+  }
+  problem.skin_mass.centroid_mm /= problem.skin_mass.weight_n;
+  problem.free_nodes.assign(nodes, false);
+  for (std::size_t i = frame.skin_node_count; i < nodes; ++i) problem.free_nodes[i] = true;
+  return problem;
+}
+
+LoadCase top_load(const FrameProblem& problem, const std::string& name, const Vector3d& force_n) {
+  const auto& nodes = problem.frame.nodes_mm;
+  double top = 0;
+  for (const Vector3d& p : nodes) top = std::max(top, p.z());
+  LoadCase load{name, true, std::vector<Vector3d>(nodes.size(), Vector3d::Zero())};
+  std::vector<int> carrying;
+  for (int i = 0; i < problem.frame.skin_node_count; ++i)
+    if (nodes[i].z() > top - 8) carrying.push_back(i);
+  for (int i : carrying) load.force_n[i] = force_n / static_cast<double>(carrying.size());
+  return load;
+}
+
+std::vector<HalfPlane> base_hull(const Frame& frame, double margin_mm) {
+  std::vector<Eigen::Vector2d> points;
+  for (const Vector3d& p : frame.nodes_mm)
+    if (p.z() < 1e-9) points.push_back(p.head<2>());
+  std::vector<HalfPlane> hull;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (i == k) continue;
+      const Eigen::Vector2d along = points[k] - points[i];
+      const Eigen::Vector2d normal = Eigen::Vector2d(along.y(), -along.x()).normalized();
+      const bool edge = std::all_of(points.begin(), points.end(),
+                                    [&](const auto& p) { return normal.dot(p - points[i]) <= 1e-9; });
+      if (edge) hull.push_back({normal, normal.dot(points[i]) - margin_mm});
+    }
+  return hull;
+}
+
+}  // namespace skinframe::testing

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/optimize/session.h"
+
+namespace skinframe {
+
+ProgramOutcome Session::solve(const FrameProblem& problem, ProgramRequest request, const std::vector<double>& start_mm2,
+                              std::function<bool(const ProgramVector&, const KktError&)> good_enough) {
+  const int struts = static_cast<int>(problem.frame.struts.size());
+  const ScaledProgram scaled(problem, std::move(request), start_mm2);
+  InteriorPointOptions options;
+  options.tolerance = options_.kkt_tolerance;
+  options.max_iterations = options_.max_interior_point_iterations;
+  options.each = [&](const IterationRecord& record) {
+    if (context_.report)
+      context_.report({stage_, stage_iteration_++, scaled.volume_mm3(record.volume), record.error.primal, struts});
+    return !context_.cancelled();
+  };
+  if (good_enough) options.good_enough = std::move(good_enough);
+  options.restore_equilibrium = [&](ProgramVector& point) { scaled.restore_equilibrium(point); };
+
+  const InteriorPointResult result = solve_program(scaled.program(), scaled.start(), options);
+  iterations_ += result.iterations;
+  return {result.end, scaled.areas_mm2(result.point), scaled.positions_mm(result.point), result.point.elastic,
+          result.error.worst()};
+}
+
+}  // namespace skinframe

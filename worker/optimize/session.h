@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One call of optimize_frame: its options, its run context, and what its stages add up.
+#pragma once
+
+#include <vector>
+
+#include "worker/optimize/interior_point.h"
+#include "worker/optimize/optimize_frame.h"
+#include "worker/optimize/scaled_program.h"
+#include "worker/run/run_context.h"
+
+namespace skinframe {
+
+struct ProgramOutcome {
+  InteriorPointEnd end = InteriorPointEnd::kStuck;
+  std::vector<double> areas_mm2;
+  NodeVectors positions_mm;
+  double elastic = 0;
+  double kkt_error = 0;
+};
+
+class Session {
+ public:
+  Session(const OptimizeOptions& options, RunContext& context) : options_(options), context_(context) {}
+
+  const OptimizeOptions& options() const { return options_; }
+  bool cancelled() const { return context_.cancelled(); }
+  int interior_point_iterations() const { return iterations_; }
+  void enter(Stage stage) { stage_ = stage, stage_iteration_ = 0; }
+
+  // Builds the program, runs the interior point, reports progress at each of its iterations. `good_enough`: see there.
+  ProgramOutcome solve(const FrameProblem& problem, ProgramRequest request, const std::vector<double>& start_mm2,
+                       std::function<bool(const ProgramVector&, const KktError&)> good_enough = {});
+
+ private:
+  const OptimizeOptions& options_;
+  RunContext& context_;
+  Stage stage_ = Stage::kSize;
+  int stage_iteration_ = 0;
+  int iterations_ = 0;
+};
+
+}  // namespace skinframe

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/optimize/size_frame.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "worker/optimize/uniform_start.h"
+
+namespace skinframe {
+namespace {
+
+// The elastic program may stop once the limits hold with this much room, in t = utilisation^2, and with this primal error.
+constexpr double kElasticEnough = 0.98;
+constexpr double kElasticError = 1e-4;
+// The least violation of balance counts as none below this, mm.
+constexpr double kBalanceToleranceMm = 1e-6;
+// A hint is a start when it is at most this far from feasible.
+constexpr double kHintUtilisation = 1.5;
+
+class Sizing {
+ public:
+  Sizing(const FrameProblem& problem, Session& session) : problem_(problem), session_(session), solver_(problem) {
+    set_size_bounds(problem, bounds_);
+  }
+
+  SizedFrame run(const std::vector<double>& hint_mm2) {
+    if (const SizedFrame least = presolve(); least.feasible()) return least;
+    if (session_.cancelled()) return cancelled();
+    if (const auto unbalanced = least_imbalance()) return *unbalanced;
+
+    std::vector<double> start = hint_mm2;
+    for (std::size_t j = 0; j < start.size(); ++j)
+      start[j] = std::clamp(start[j], bounds_.lower_mm2[j], bounds_.upper_mm2[j]);
+    if (start.empty() || utilisation(evaluated(start)) > kHintUtilisation) {
+      UniformStart uniform = uniform_start(problem_, bounds_.lower_mm2, bounds_.upper_mm2, solver_);
+      start = std::move(uniform.areas_mm2);
+      if (uniform.utilisation > 1) {
+        const SizedFrame reached = least_utilisation(start, uniform.utilisation);
+        if (!reached.feasible()) return reached;
+        start = reached.areas_mm2;
+      }
+    }
+    if (session_.cancelled()) return cancelled();
+    return minimise_volume(start);
+  }
+
+ private:
+  Evaluation evaluated(const std::vector<double>& areas_mm2) {
+    return evaluate(problem_, radii_of(areas_mm2), solver_.solve(areas_mm2));
+  }
+  bool holds(const Evaluation& evaluation) const { return is_feasible(evaluation, session_.options()); }
+
+  SizedFrame at(Termination reason, std::vector<double> areas_mm2, std::string detail) {
+    SizedFrame sized;
+    sized.reason = reason;
+    sized.evaluation = evaluated(areas_mm2);
+    sized.areas_mm2 = std::move(areas_mm2);
+    sized.detail = std::move(detail);
+    if (reason == Termination::kInfeasible)
+      sized.violated_constraint = violated_constraint(sized.evaluation, session_.options().feasibility_tolerance);
+    return sized;
+  }
+  SizedFrame cancelled() {
+    SizedFrame sized;
+    sized.cancelled = true;
+    return sized;
+  }
+
+  SizedFrame presolve() {
+    SizedFrame least = at(Termination::kOptimal, bounds_.lower_mm2,
+                          "every strut at its lower bound is feasible: the global optimum of this frame");
+    least.lower_bound_mm3 = least.volume_mm3();
+    if (!holds(least.evaluation)) least.reason = Termination::kInfeasible;
+    return least;
+  }
+
+  // The load cases as the interior point takes them: those of the greatest demand first.
+  int critical_case(const std::vector<double>& areas_mm2) {
+    const std::vector<CaseResponse> responses = solver_.solve(areas_mm2);
+    int critical = 0;
+    double worst = -1;
+    for (std::size_t k = 0; k < responses.size(); ++k) {
+      const double demand = demand_of(areas_mm2, responses, static_cast<int>(k));
+      if (demand > worst) worst = demand, critical = static_cast<int>(k);
+    }
+    return critical;
+  }
+
+  double demand_of(const std::vector<double>& areas_mm2, const std::vector<CaseResponse>& responses, int load_case) const {
+    return utilisation(evaluate(problem_, radii_of(areas_mm2), {responses[load_case]}));
+  }
+
+  ProgramRequest request(const std::vector<int>& cases) const {
+    ProgramRequest request = bounds_;
+    request.cases = cases;
+    return request;
+  }
+
+  // Calls solve(cases) with more and more of them until it returns areas that none of the others violates.
+  template <class Solve>
+  ProgramOutcome over_cases(const std::vector<double>& start, double limit_factor, Solve&& solve) {
+    std::vector<int> cases;
+    if (!problem_.load_cases.empty()) cases.push_back(critical_case(start));
+    for (;;) {
+      ProgramOutcome outcome = solve(cases);
+      if (outcome.end == InteriorPointEnd::kCancelled) return outcome;
+      const double factor = limit_factor * std::max(1.0, std::sqrt(std::max(outcome.elastic, 0.0)));
+      const std::vector<CaseResponse> responses = solver_.solve(outcome.areas_mm2);
+      const std::size_t before = cases.size();
+      for (int k = 0; k < static_cast<int>(responses.size()); ++k)
+        if (std::find(cases.begin(), cases.end(), k) == cases.end() &&
+            demand_of(outcome.areas_mm2, responses, k) > factor * (1 + session_.options().feasibility_tolerance))
+          cases.push_back(k);
+      if (cases.size() == before) return outcome;
+    }
+  }
+
+  // Minimises t in |d|^2 <= t epsilon^2 (and so for the strains) from the best uniform radius.
+  SizedFrame least_utilisation(const std::vector<double>& start, double start_utilisation) {
+    const double factor = std::isfinite(start_utilisation) ? start_utilisation : 1.0;
+    const double enough = kElasticEnough / (factor * factor);
+    const ProgramOutcome outcome = over_cases(start, factor, [&](const std::vector<int>& cases) {
+      ProgramRequest elastic = request(cases);
+      elastic.limit_factor = factor;
+      elastic.elastic = ElasticScope::kLimits;
+      return session_.solve(problem_, elastic, start, [&](const ProgramVector& point, const KktError& error) {
+        return point.elastic <= enough && error.primal <= kElasticError;
+      });
+    });
+    if (outcome.end == InteriorPointEnd::kCancelled) return cancelled();
+    SizedFrame reached = at(Termination::kInfeasible, outcome.areas_mm2, "");
+    const double best = utilisation(reached.evaluation);
+    if (!(best <= start_utilisation)) reached = at(Termination::kInfeasible, start, "");  // the search made it worse
+    if (best <= 1) {
+      reached.reason = Termination::kOptimal;
+      return reached;
+    }
+    reached.kkt_error = outcome.kkt_error;
+    reached.detail = fmt::format(
+        "{} cannot be kept: the best reachable is {:.4g} times the limit ({})", reached.violated_constraint,
+        utilisation(reached.evaluation),
+        outcome.end == InteriorPointEnd::kOptimal ? "a local optimum of the least violation" : "the search stopped early");
+    return reached;
+  }
+
+  // The frame that leans least, when no areas within the bounds bring the centre of gravity over the base; a linear program.
+  std::optional<SizedFrame> least_imbalance() {
+    if (problem_.balance.empty()) return std::nullopt;
+    const std::vector<double> middle = [&] {
+      std::vector<double> areas = bounds_.lower_mm2;
+      for (std::size_t j = 0; j < areas.size(); ++j) areas[j] = (areas[j] + bounds_.upper_mm2[j]) / 2;
+      return areas;
+    }();
+    for (const auto& areas : {bounds_.lower_mm2, middle})
+      if (evaluated(areas).balance_margin_mm >= 0) return std::nullopt;
+    ProgramRequest elastic = request({});
+    elastic.elastic = ElasticScope::kBalance;
+    const ProgramOutcome outcome = session_.solve(
+        problem_, elastic, middle, [&](const ProgramVector& point, const KktError&) { return point.elastic < 0; });
+    if (outcome.end == InteriorPointEnd::kCancelled) return cancelled();
+    SizedFrame leaning = at(Termination::kInfeasible, outcome.areas_mm2, "");
+    if (leaning.evaluation.balance_margin_mm >= -kBalanceToleranceMm) return std::nullopt;
+    leaning.violated_constraint = "balance";
+    leaning.detail = fmt::format("balance cannot be kept: within the bounds on the radii the centre of gravity stays {:.4g} mm "
+                                 "outside the base",
+                                 -leaning.evaluation.balance_margin_mm);
+    return leaning;
+  }
+
+  SizedFrame minimise_volume(const std::vector<double>& start) {
+    const ProgramOutcome outcome = over_cases(
+        start, 1.0, [&](const std::vector<int>& cases) { return session_.solve(problem_, request(cases), start); });
+    if (outcome.end == InteriorPointEnd::kCancelled) return cancelled();
+    const bool optimal = outcome.end == InteriorPointEnd::kOptimal;
+    SizedFrame sized = at(optimal ? Termination::kOptimal : Termination::kIterationLimit, outcome.areas_mm2,
+                          optimal ? "a local optimum" : "the interior point stopped before its tolerance");
+    sized.kkt_error = outcome.kkt_error;
+    if (holds(sized.evaluation)) return sized;
+    SizedFrame kept = at(Termination::kIterationLimit, start, "the interior point failed: its start is kept");
+    kept.kkt_error = outcome.kkt_error;
+    if (holds(kept.evaluation)) return kept;
+    sized.reason = Termination::kInfeasible;
+    sized.violated_constraint = violated_constraint(sized.evaluation, session_.options().feasibility_tolerance);
+    sized.detail = fmt::format("{} is not kept where the search ended: no feasible frame was found", sized.violated_constraint);
+    return sized;
+  }
+
+  const FrameProblem& problem_;
+  Session& session_;
+  EquilibriumSolver solver_;
+  ProgramRequest bounds_;
+};
+
+}  // namespace
+
+bool is_feasible(const Evaluation& evaluation, const OptimizeOptions& options) {
+  return violated_constraint(evaluation, options.feasibility_tolerance).empty();
+}
+
+SizedFrame size_frame(const FrameProblem& problem, const std::vector<double>& hint_mm2, Session& session) {
+  return Sizing(problem, session).run(hint_mm2);
+}
+
+}  // namespace skinframe

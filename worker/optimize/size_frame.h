@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// SizeOpt (15): the areas of least volume for given nodes and struts.
+//
+//   presolve   lower bounds feasible: they are the global optimum (one linear solve)
+//   start      the smallest feasible uniform radius, else the least violation reachable
+//   solve      the interior point over the critical load case; cases it violates join until none does
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "worker/mechanics/evaluation.h"
+#include "worker/mechanics/frame_problem.h"
+#include "worker/optimize/session.h"
+
+namespace skinframe {
+
+struct SizedFrame {
+  Termination reason = Termination::kInfeasible;
+  bool cancelled = false;
+  std::vector<double> areas_mm2;
+  Evaluation evaluation;
+  double kkt_error = 0;
+  std::optional<double> lower_bound_mm3;
+  std::string violated_constraint;  // when infeasible
+  std::string detail;
+
+  bool feasible() const { return !cancelled && reason != Termination::kInfeasible; }
+  double volume_mm3() const { return evaluation.frame_volume_mm3; }
+};
+
+// `hint_mm2`: areas near the optimum, one a strut, or empty. Cancellation is in the result.
+SizedFrame size_frame(const FrameProblem& problem, const std::vector<double>& hint_mm2, Session& session);
+
+// Every constraint holds within the feasibility tolerance.
+bool is_feasible(const Evaluation& evaluation, const OptimizeOptions& options);
+
+}  // namespace skinframe
