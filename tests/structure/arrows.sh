@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# The arrows of the house: who may include whom. The linker holds most of them; headers slip through it, not through here.
+# Usage: arrows.sh SOURCE_DIR
+set -euo pipefail
+cd "$1"
+failures=0
+
+# forbid FOLDER PATTERN WHY: no source in FOLDER includes what PATTERN matches.
+forbid() {
+  local found
+  [ -d "$1" ] || { echo "arrows: no folder $1"; failures=$((failures + 1)); return; }
+  if found=$(grep -rnE "^[[:space:]]*#include [\"<]($2)" --include='*.h' --include='*.cpp' "$1"); then
+    echo "arrows: $3:"
+    echo "$found"
+    failures=$((failures + 1))
+  fi
+}
+
+forbid client '(worker|server)/' "the client knows proto/ only"
+forbid server '(worker|client)/' "the server knows proto/ only"
+forbid worker '(server|client)/' "the worker knows proto/ only"
+for room in run mesh solid skin frame mechanics optimize problem export report sample pipeline check job; do
+  forbid "worker/$room" '(skinframe/v1|grpc|google/protobuf)' "only the agent sees gRPC and protobuf"
+done
+stages=(mesh solid skin frame mechanics optimize problem export report pipeline)
+for i in "${!stages[@]}"; do
+  for j in "${!stages[@]}"; do
+    [ "$j" -gt "$i" ] && forbid "worker/${stages[i]}" "worker/${stages[j]}/" "${stages[i]} stands left of ${stages[j]}"
+  done
+done
+forbid worker/check 'worker/(solid|skin|frame|mechanics|optimize|problem|export|report|pipeline)/' "the check shares no code with what it judges"
+for room in jobs store; do
+  forbid "server/$room" 'server/api/' "$room stands left of api"
+done
+forbid server/jobs '(server/store|sqlite3|grpc)' "jobs are pure"
+if found=$(grep -rlE '#include <(CGAL|openvdb)/' --include='*.h' worker | grep -v -E 'worker/(skin/distance_grids|[a-z]+/[a-z_]*_(grid|grids|cgal|vdb|openvdb))\.h'); then
+  echo "arrows: CGAL and OpenVDB stay in .cpp files:"
+  echo "$found"
+  failures=$((failures + 1))
+fi
+
+echo "arrows: $failures broken"
+[ "$failures" -eq 0 ]
