@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whole jobs on sample bodies.
+#include "worker/pipeline/pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "tests/worker/pipeline/small_job.h"
+
+namespace skinframe {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+json read_json(const fs::path& path) {
+  std::ifstream in(path);
+  return json::parse(in);
+}
+
+TEST(Pipeline, ARefusedPrinterDoesNotSinkTheOthers) {
+  test::ScratchFolder folder;
+  JobRequest request = test::sample_job("egg", 60, 60, folder.path());
+  PrinterRequest small = test::sinterstation_pa();
+  small.printer.id = "matchbox";
+  small.printer.tray_mm = {30, 20, 10};
+  request.printers.insert(request.printers.begin(), small);
+  RunContext context;
+  auto outcomes = run_pipeline(request, folder.path() / "out", PipelineObserver{}, context);
+  ASSERT_TRUE(outcomes.ok()) << outcomes.error().message;
+  EXPECT_EQ((*outcomes)[0].reason, Reason::kDoesNotFit);
+  EXPECT_FALSE(fs::exists(folder.path() / "out" / "matchbox"));
+  EXPECT_TRUE((*outcomes)[1].succeeded()) << (*outcomes)[1].detail;
+  EXPECT_TRUE(fs::exists(folder.path() / "out" / "sinterstation-hiq" / "skin-frame.stl"));
+}
+
+TEST(Pipeline, SameInputAndSeedGiveTheSameFrame) {
+  test::ScratchFolder folder;
+  JobRequest request = test::sample_job("egg", 60, 60, folder.path());
+  request.loads = {{"side", Place::kTop, {2, 0, 0}, 5}};
+  std::string frames[2];
+  for (int i = 0; i < 2; ++i) {
+    RunContext context;
+    context.threads = i + 1;
+    const fs::path out = folder.path() / std::to_string(i);
+    ASSERT_TRUE(run_pipeline(request, out, PipelineObserver{}, context).ok());
+    std::ifstream in(out / "sinterstation-hiq" / "frame.json");
+    frames[i].assign(std::istreambuf_iterator<char>(in), {});
+  }
+  EXPECT_FALSE(frames[0].empty());
+  EXPECT_TRUE(frames[0] == frames[1]);
+}
+
+TEST(Pipeline, ProgressNamesEveryStageInOrder) {
+  test::ScratchFolder folder;
+  JobRequest request = test::sample_job("egg", 60, 60, folder.path());
+  std::vector<Stage> stages;
+  PipelineObserver observer;
+  observer.progress = [&](const PipelineProgress& p) {
+    if (stages.empty() || stages.back() != p.progress.stage) stages.push_back(p.progress.stage);
+  };
+  RunContext context;
+  ASSERT_TRUE(run_pipeline(request, folder.path() / "out", observer, context).ok());
+  for (const Stage stage : {Stage::kRead, Stage::kRepair, Stage::kSkin, Stage::kSample, Stage::kSize, Stage::kExport})
+    EXPECT_NE(std::find(stages.begin(), stages.end(), stage), stages.end()) << to_string(stage);
+  EXPECT_EQ(stages.back(), Stage::kExport);
+}
+
+TEST(Pipeline, CancellationEndsTheJobWithoutAResult) {
+  test::ScratchFolder folder;
+  JobRequest request = test::sample_job("egg", 60, 60, folder.path());
+  std::stop_source stop;
+  PipelineObserver observer;
+  observer.progress = [&](const PipelineProgress& p) {
+    if (p.progress.stage == Stage::kSize) stop.request_stop();
+  };
+  RunContext context;
+  context.stop = stop.get_token();
+  auto outcomes = run_pipeline(request, folder.path() / "out", observer, context);
+  ASSERT_FALSE(outcomes.ok());
+  EXPECT_EQ(outcomes.error().kind, ErrorKind::kCancelled);
+  EXPECT_FALSE(fs::exists(folder.path() / "out" / "report.json"));
+}
+
+TEST(Pipeline, WithoutOptimisationRadiiStandAtTheirLowerBoundsAndNoLimitIsClaimed) {
+  test::ScratchFolder folder;
+  JobRequest request = test::sample_job("egg", 60, 60, folder.path());
+  request.options.no_optimize = true;
+  RunContext context;
+  auto outcomes = run_pipeline(request, folder.path() / "out", PipelineObserver{}, context);
+  ASSERT_TRUE(outcomes.ok());
+  ASSERT_TRUE(outcomes->front().succeeded());
+  const json report = read_json(folder.path() / "out" / "report.json");
+  EXPECT_EQ(report["printers"][0]["termination"]["reason"], "NOT_OPTIMIZED");
+  EXPECT_EQ(report["printers"][0]["min_radius_mm"], 0.5);
+}
+
+// Figure 7 of the paper: with the smaller base the centre of gravity of the light structure would fall outside, and mass has
+// to go low and to the other side: into the pillar.
+TEST(Pipeline, TheSmallerBaseGetsAThickerPillar) {
+  test::ScratchFolder folder;
+  double pillar_mm3[2] = {0, 0};
+  const char* names[2] = {"hanging-ball", "hanging-ball-small-base"};
+  for (int i = 0; i < 2; ++i) {
+    JobRequest request = test::sample_job(names[i], 200, 260, folder.path());
+    request.options.balance = BalanceMode::kRequire;
+    RunContext context;
+    const fs::path out = folder.path() / names[i];
+    auto outcomes = run_pipeline(request, out, PipelineObserver{}, context);
+    ASSERT_TRUE(outcomes.ok()) << outcomes.error().message;
+    ASSERT_TRUE(outcomes->front().succeeded()) << names[i] << ": " << outcomes->front().detail;
+    const json report = read_json(out / "report.json");
+    EXPECT_EQ(report["printers"][0]["balance"], "holds");
+    const json frame = read_json(out / "sinterstation-hiq" / "frame.json");
+    for (const json& strut : frame["struts"]) {
+      Eigen::Vector3d a, b;
+      for (int k = 0; k < 3; ++k) {
+        a[k] = frame["nodes"][strut["a"].get<int>()][k];
+        b[k] = frame["nodes"][strut["b"].get<int>()][k];
+      }
+      const Eigen::Vector3d middle = 0.5 * (a + b);
+      const double r = strut["radius_mm"];
+      // Above the base plate and below the arm.
+      if (middle.z() > 20 && middle.z() < 130) pillar_mm3[i] += std::numbers::pi * r * r * (b - a).norm();
+    }
+  }
+  EXPECT_GT(pillar_mm3[1], 1.05 * pillar_mm3[0]);
+}
+
+}  // namespace
+}  // namespace skinframe
