@@ -5,11 +5,13 @@
 
 #include <chrono>
 #include <exception>
-#include <numeric>
 
 #include "worker/optimize/block_ldlt.h"
+#include "worker/optimize/design.h"
+#include "worker/optimize/geometry_stage.h"
 #include "worker/optimize/session.h"
 #include "worker/optimize/size_frame.h"
+#include "worker/optimize/topology_stage.h"
 
 namespace skinframe {
 namespace {
@@ -53,23 +55,100 @@ Status OptimizeOptions::validate() const {
   return ok_status();
 }
 
+namespace {
+
+// Algorithm 1 from a sized frame on, and what is said about it.
+class Algorithm {
+ public:
+  Algorithm(const FrameProblem& problem, const OptimizeOptions& options, RunContext& context)
+      : options_(options), session_(options, context), design_(initial_design(problem)) {
+    ProgramRequest bounds;
+    set_size_bounds(problem, bounds);
+    result_.initial = record_of(problem, frame_volume_mm3(problem.frame, radii_of(bounds.lower_mm2)));
+  }
+
+  Result<OptimizeResult> run() {
+    size();
+    if (session_.cancelled()) return cancelled_error();
+    if (result_.reason != Termination::kInfeasible) reduce();
+    if (session_.cancelled()) return cancelled_error();
+    return finish();
+  }
+
+ private:
+  template <class Act>
+  void timed(const char* stage, Stage progress_stage, Act&& act) {
+    const auto start = std::chrono::steady_clock::now();
+    session_.enter(progress_stage);
+    act();
+    result_.seconds[stage] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+  void size() {
+    timed("size", Stage::kSize, [&] {
+      SizedFrame sized = size_frame(design_.problem, {}, session_);
+      if (sized.cancelled) return;
+      result_.reason = sized.reason;
+      result_.detail = sized.detail;
+      result_.violated_constraint = sized.violated_constraint;
+      result_.lower_bound_mm3 = sized.lower_bound_mm3;
+      if (sized.reason == Termination::kInfeasible)
+        result_.best_reachable_displacement_mm = sized.evaluation.max_displacement_mm;
+      result_.kkt_residual = sized.kkt_error;
+      design_.areas_mm2 = std::move(sized.areas_mm2);
+      design_.volume_mm3 = sized.evaluation.frame_volume_mm3;
+    });
+    result_.size = result_.topology = result_.geometry = record_of(design_.problem, design_.volume_mm3);
+  }
+
+  // TopOpt and GeoOpt in turn until the volume falls by less than outer_decrease.
+  void reduce() {
+    if (!options_.topology && !options_.geometry) return;
+    for (int round = 0; round < options_.max_outer_iterations; ++round) {
+      const double before = design_.volume_mm3;
+      if (options_.topology)
+        timed("topology", Stage::kTopology, [&] { design_ = optimise_topology(std::move(design_), session_); });
+      if (session_.cancelled()) return;
+      if (round == 0) result_.topology = record_of(design_.problem, design_.volume_mm3);
+      if (options_.geometry)
+        timed("geometry", Stage::kGeometry, [&] { design_ = optimise_geometry(std::move(design_), session_); });
+      if (session_.cancelled()) return;
+      result_.geometry = record_of(design_.problem, design_.volume_mm3);
+      result_.outer_iterations = round + 1;
+      if (design_.volume_mm3 > (1 - options_.outer_decrease) * before) return;
+    }
+  }
+
+  OptimizeResult finish() {
+    result_.radii_mm = radii_of(design_.areas_mm2);
+    const std::vector<CaseResponse> responses = solve_equilibrium(design_.problem, design_.areas_mm2);
+    result_.evaluation = evaluate(design_.problem, result_.radii_mm, responses);
+    for (const CaseResponse& response : responses) result_.displacements_mm.push_back(response.displacements_mm);
+    result_.interior_point_iterations = session_.interior_point_iterations();
+    result_.node_origin = std::move(design_.node_origin);
+    result_.strut_origin = std::move(design_.strut_origin);
+    result_.problem = std::move(design_.problem);
+    return std::move(result_);
+  }
+
+  const OptimizeOptions& options_;
+  Session session_;
+  Design design_;
+  OptimizeResult result_;
+};
+
+}  // namespace
+
 Result<OptimizeResult> optimize_frame(const FrameProblem& problem, const OptimizeOptions& options, RunContext& context) {
   if (Status s = validate(problem); !s.ok()) return s.error();
   if (Status s = options.validate(); !s.ok()) return s.error();
+  if (context.cancelled()) return cancelled_error();
   use_one_blas_thread();
-  Session session(options, context);
-  SizedFrame sized = size_frame(problem, {}, session);
-  if (sized.cancelled) return cancelled_error();
-  OptimizeResult result;
-  result.reason = sized.reason;
-  result.detail = sized.detail;
-  result.problem = problem;
-  result.radii_mm = radii_of(sized.areas_mm2);
-  result.evaluation = sized.evaluation;
-  result.size = record_of(problem, sized.volume_mm3());
-  result.kkt_residual = sized.kkt_error;
-  result.interior_point_iterations = session.interior_point_iterations();
-  return result;
+  try {
+    return Algorithm(problem, options, context).run();
+  } catch (const std::exception& e) {  // bad_alloc and what Eigen or the caller's functions throw
+    return internal_error(fmt::format("the optimiser gave up: {}", e.what()));
+  }
 }
 
 }  // namespace skinframe

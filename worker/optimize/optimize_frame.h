@@ -5,7 +5,7 @@
 // Guarantees:
 //  - Same problem and options, same result, bit for bit.
 //  - The result is a value for every ending that is not cancellation or bad input: see Termination.
-//  - Volumes of size, topology and geometry never rise from one to the next.
+//  - Volumes of size, topology and geometry never rise from one to the next, beyond kVolumeTie.
 //  - `evaluation` is computed afresh from radii and positions, not taken from the optimiser.
 #pragma once
 
@@ -56,8 +56,9 @@ struct OptimizeOptions {
   // TopOpt: cap = (1 + topology_cap_room) * volume (20), range (0, 1).
   double topology_cap_room = 0.005;
   int topology_reweightings = 2;  // > 0
-  // Weights 1 / (topology_xi * mean area + A), range (0, 1]. xi of (18), in A.
-  double topology_xi = 1e-2;
+  // Weights proportional to 1 / (topology_xi * mean area + A), range (0, 1]: xi of (18), linear in A and not in r, since a
+  // xi of 1e-7 in r fails in every solver tried.
+  double topology_xi = 0.05;
   // A strut goes when A <= removal_share * lower bound, after the relaxed and after the reweighted program; (0, 1).
   double relaxed_removal_share = 0.25;
   double topology_removal_share = 0.05;
@@ -71,6 +72,9 @@ struct OptimizeOptions {
 
   Status validate() const;
 };
+
+// Two volumes closer than this, relative, count as equal: then the frame with fewer struts is taken.
+inline constexpr double kVolumeTie = 1e-7;
 
 enum class Termination {
   kOptimal,         // every stage ended at its optimum (a local one for topology and geometry)

@@ -77,7 +77,7 @@ ScaledProgram::ScaledProgram(const FrameProblem& problem, ProgramRequest request
   }
   if (!request_.area_weights.empty()) {
     program_.volume_weight = 0;
-    program_.area_weights = VectorXd::Map(request_.area_weights.data(), m) * scale_.area_mm2;
+    program_.area_weights = VectorXd::Map(request_.area_weights.data(), m);
   }
   if (request_.volume_cap_mm3) program_.volume_cap = *request_.volume_cap_mm3 / (scale_.area_mm2 * scale_.length_mm);
 

@@ -31,9 +31,10 @@ struct ProgramRequest {
   double limit_factor = 1;                         // multiplies the limits of (2), (3) and (6)
   ElasticScope elastic = ElasticScope::kNone;      // minimise t, and not the volume, when not kNone
   std::optional<double> volume_cap_mm3;
-  std::vector<double> area_weights;                // minimise sum w A / mean length, and not the volume, when not empty
+  std::vector<double> area_weights;                // minimise sum w A, and not the volume, when not empty; of order one
   NodeRegions regions;                             // nodes with a list move; empty: none does
   std::vector<double> min_length_mm;               // one a strut, where nodes move
+  double initial_barrier = 0.1;                    // less where the start is near the optimum
 };
 
 // Lower and upper areas of all struts as area_bounds leaves them.

@@ -6,8 +6,9 @@ namespace skinframe {
 ProgramOutcome Session::solve(const FrameProblem& problem, ProgramRequest request, const std::vector<double>& start_mm2,
                               std::function<bool(const ProgramVector&, const KktError&)> good_enough) {
   const int struts = static_cast<int>(problem.frame.struts.size());
-  const ScaledProgram scaled(problem, std::move(request), start_mm2);
   InteriorPointOptions options;
+  options.initial_barrier = request.initial_barrier;
+  const ScaledProgram scaled(problem, std::move(request), start_mm2);
   options.tolerance = options_.kkt_tolerance;
   options.max_iterations = options_.max_interior_point_iterations;
   options.each = [&](const IterationRecord& record) {
