@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is printed: M minus a cavity, the cavity being M1 minus the struts.
 //
-// The outer surface is M's own triangles, untouched and first in the list; behind them stands the cavity's boundary,
-// reversed, taken from one level set max(distance to M + h_S, -(distance to the nearest strut axis - r)). So struts are
-// clipped to M1, nothing ever comes nearer than about h_S to M from within, and parts too thin for a cavity are solid.
+// The outer surface is M's own triangles, untouched and first in the list; behind them stands the cavity's
+// boundary, reversed, taken from one level set max(distance to M + h_S, -(distance to the nearest strut axis
+// - r)). So struts are clipped to M1, nothing ever comes nearer than about h_S to M from within, and parts
+// too thin for a cavity are solid.
 //
 // Guarantees, on the coordinates rounded to float as a binary STL stores them:
 //  1. Every edge has exactly two triangles, in opposite directions (when that holds for M).
@@ -22,21 +23,22 @@
 namespace skinframe {
 
 struct ExportOptions {
-  std::optional<double> voxel_mm;       // default 0.6 of the smallest radius, at least the skin's own voxel
-  double smallest_pocket_mm3 = 1.0;     // sealed pockets below are filled, >= 0
+  std::optional<double> voxel_mm;    // default 0.6 of the smallest radius, at least the skin's own voxel
+  double smallest_pocket_mm3 = 1.0;  // sealed pockets below are filled, >= 0
   Status validate() const;
 };
 
 struct PrintableMesh {
-  TriangleMesh mesh;                    // coordinates are exact floats
+  TriangleMesh mesh;  // coordinates are exact floats
   double volume_mm3 = 0.0;
   double cavity_volume_mm3 = 0.0;
   double voxel_mm = 0.0;
-  int pockets = 0;                      // cavity pieces that stay
+  int pockets = 0;  // cavity pieces that stay
   int pockets_filled = 0;
 };
 
-// radii_mm: one a strut of the frame. Errors: kInvalidInput for an option out of range or a grid too large; kCancelled.
+// radii_mm: one a strut of the frame. Errors: kInvalidInput for an option out of range or a grid too large;
+// kCancelled.
 Result<PrintableMesh> merge_solid(const Solid& solid, const Skin& skin, const Frame& frame,
                                   const std::vector<double>& radii_mm, const ExportOptions& options,
                                   RunContext& context);

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/export/printable.h"
+
+#include <fmt/format.h>
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/Composite.h>
+#include <openvdb/tools/Prune.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "worker/export/strut_level_set.h"
+#include "worker/frame/vertex_graph.h"
+#include "worker/skin/distance_grids.h"
+#include "worker/skin/level_set.h"
+#include "worker/skin/mend_edges.h"
+#include "worker/solid/solid.h"
+
+namespace skinframe {
+namespace {
+
+constexpr double kBandVoxels = 3.0;
+constexpr double kMaxSurfaceSquares = 3e6;   // as in build_skin.cpp: some 600 MB while the grid is made
+constexpr double kFinestVoxelInRadii = 0.6;  // the default lies between these, by the triangles it makes
+constexpr double kCoarsestVoxelInRadii = 0.8;
+constexpr double kTrianglesAimed = 1e6;
+constexpr double kTrianglesPerSquare = 3.0;  // of a surface without preferred direction, by square voxel
+
+Result<double> choose_voxel(const ExportOptions& options, const Skin& skin,
+                            const std::vector<double>& radii_mm, double area_mm2) {
+  const double least = std::sqrt(area_mm2 / kMaxSurfaceSquares);
+  double thinnest = 0.5 * skin.thickness_mm;
+  if (!radii_mm.empty()) thinnest = *std::min_element(radii_mm.begin(), radii_mm.end());
+  const double by_triangles = std::sqrt(kTrianglesPerSquare * area_mm2 / kTrianglesAimed);
+  const double fallback = std::max(
+      least, std::clamp(by_triangles, kFinestVoxelInRadii * thinnest, kCoarsestVoxelInRadii * thinnest));
+  const double voxel = options.voxel_mm.value_or(std::min(fallback, skin.thickness_mm));
+  if (voxel < least * (1.0 - 1e-9) || voxel > skin.thickness_mm) {
+    return invalid_input(
+        fmt::format("an export grid of {:.3g} mm on a surface of {:.0f} mm2: use a --voxel between "
+                    "{:.3g} and {:.3g} mm or a smaller --size",
+                    voxel, area_mm2, least, skin.thickness_mm));
+  }
+  return voxel;
+}
+
+// The narrow band of M1 from the distance to M: distance + h_S, clamped.
+openvdb::FloatGrid::Ptr m1_level_set(const TriangleMesh& mesh, const Skin& skin, double voxel, double band) {
+  openvdb::FloatGrid::Ptr grid;
+  if (skin.field.grids() != nullptr && skin.field.grids()->voxel_mm == voxel) {
+    grid = skin.field.grids()->fine->deepCopy();
+  } else {
+    const double inner = std::ceil(skin.thickness_mm / voxel) + kBandVoxels + 1.0;
+    grid = distance_grid(mesh, voxel, kBandVoxels + 1.0, inner);
+  }
+  const float limit = static_cast<float>(band);
+  for (auto it = grid->beginValueAll(); it; ++it) {
+    const float value = *it + static_cast<float>(skin.thickness_mm);
+    if (value >= limit || value <= -limit) {
+      it.setValue(std::clamp(value, -limit, limit));
+      it.setActiveState(false);
+    } else {
+      it.setValue(value);
+    }
+  }
+  openvdb::tools::changeBackground(grid->tree(), limit);
+  openvdb::tools::pruneLevelSet(grid->tree());
+  grid->setGridClass(openvdb::GRID_LEVEL_SET);
+  return grid;
+}
+
+// Closed shells too small to matter: pockets of the cavity (counted) and crumbs of solid floating in it.
+TriangleMesh drop_small_shells(const TriangleMesh& cavity, double smallest_mm3, PrintableMesh& result) {
+  TriangleMesh kept;
+  for (const TriangleMesh& shell : split_pieces(cavity)) {
+    const double volume = signed_volume(shell);
+    if (std::abs(volume) < smallest_mm3) {
+      result.pockets_filled += volume > 0.0;
+      continue;
+    }
+    result.pockets += volume > 0.0;
+    const int first = static_cast<int>(kept.vertices.size());
+    kept.vertices.insert(kept.vertices.end(), shell.vertices.begin(), shell.vertices.end());
+    for (const auto& t : shell.triangles)
+      kept.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return kept;
+}
+
+Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Frame& frame,
+                            const std::vector<double>& radii_mm, const ExportOptions& options,
+                            const RunContext& context) {
+  const auto voxel = choose_voxel(options, skin, radii_mm, surface_area(mesh));
+  if (!voxel) return voxel.error();
+  const double band = kBandVoxels * *voxel;
+  auto cavity_grid = m1_level_set(mesh, skin, *voxel, band);
+  if (context.cancelled()) return cancelled_error();
+  auto struts = strut_level_set(frame, radii_mm, *voxel, band);
+  if (context.cancelled()) return cancelled_error();
+  openvdb::tools::csgDifference(*cavity_grid, *struts);
+  TriangleMesh cavity = iso_surface(*cavity_grid, 0.0);
+  cavity_grid.reset();
+  if (context.cancelled()) return cancelled_error();
+
+  PrintableMesh result;
+  result.voxel_mm = *voxel;
+  cavity = drop_small_shells(cavity, options.smallest_pocket_mm3, result);
+  if (!mend_edges(cavity).manifold) {
+    return internal_error("the boundary of the cavity is not closed: try another --voxel");
+  }
+  result.cavity_volume_mm3 = signed_volume(cavity);
+  result.volume_mm3 = signed_volume(mesh) - result.cavity_volume_mm3;
+
+  result.mesh = mesh;
+  for (auto& v : result.mesh.vertices) v = v.cast<float>().cast<double>();
+  const int first = static_cast<int>(result.mesh.vertices.size());
+  result.mesh.vertices.insert(result.mesh.vertices.end(), cavity.vertices.begin(), cavity.vertices.end());
+  result.mesh.triangles.reserve(result.mesh.triangles.size() + cavity.triangles.size());
+  for (const auto& t : cavity.triangles)
+    result.mesh.triangles.push_back({first + t[0], first + t[2], first + t[1]});
+  return result;
+}
+
+}  // namespace
+
+Status ExportOptions::validate() const {
+  if (voxel_mm && !(*voxel_mm > 0.0)) return invalid_input("--voxel must be above 0 mm");
+  if (!(smallest_pocket_mm3 >= 0.0)) return invalid_input("the smallest pocket must not be below 0 mm3");
+  return ok_status();
+}
+
+Result<PrintableMesh> merge_solid(const Solid& solid, const Skin& skin, const Frame& frame,
+                                  const std::vector<double>& radii_mm, const ExportOptions& options,
+                                  RunContext& context) {
+  return merge_solid(solid.mesh(), skin, frame, radii_mm, options, context);
+}
+
+Result<PrintableMesh> merge_solid(const TriangleMesh& closed_mesh, const Skin& skin, const Frame& frame,
+                                  const std::vector<double>& radii_mm, const ExportOptions& options,
+                                  RunContext& context) {
+  SKINFRAME_CHECK(radii_mm.size() == frame.struts.size());
+  if (auto status = options.validate(); !status) return status.error();
+  if (context.cancelled()) return cancelled_error();
+  try {
+    tbb::task_arena arena(std::max(1, context.threads));
+    return arena.execute([&] { return merge(closed_mesh, skin, frame, radii_mm, options, context); });
+  } catch (const std::exception& e) {
+    return internal_error(fmt::format("the struts could not be merged with the skin: {}", e.what()));
+  }
+}
+
+}  // namespace skinframe
