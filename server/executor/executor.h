@@ -18,11 +18,14 @@ namespace skinframe::server {
 class Executor {
  public:
   explicit Executor(int threads);
-  ~Executor();  // runs what was posted, then joins
+  ~Executor() { stop(); }
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
 
-  void post(std::function<void()> task);
+  void post(std::function<void()> task);  // after stop: dropped
+
+  // Runs what was posted, then joins. Call it before what the tasks use goes away.
+  void stop();
 
  private:
   void work();

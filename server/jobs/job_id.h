@@ -11,7 +11,7 @@ namespace skinframe::server {
 class IdGenerator {
  public:
   virtual ~IdGenerator() = default;
-  virtual std::string next() = 0;
+  virtual std::string next() = 0;  // from any thread
 };
 
 // From the operating system's random numbers. Aborts the process when there are none: a predictable id is worse.

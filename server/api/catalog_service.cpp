@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/api/catalog_service.h"
+
+#include <grpcpp/grpcpp.h>
+
+namespace skinframe::server {
+
+grpc::ServerUnaryReactor* CatalogService::ListPrinters(grpc::CallbackServerContext* context,
+                                                       const v1::ListPrintersRequest*,
+                                                       v1::ListPrintersResponse* response) {
+  for (const v1::PrinterProfile& printer : catalog_.printers()) *response->add_printers() = printer;
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  reactor->Finish(grpc::Status::OK);
+  return reactor;
+}
+
+grpc::ServerUnaryReactor* CatalogService::ListMaterials(grpc::CallbackServerContext* context,
+                                                        const v1::ListMaterialsRequest*,
+                                                        v1::ListMaterialsResponse* response) {
+  for (const v1::MaterialProfile& material : catalog_.materials()) *response->add_materials() = material;
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  reactor->Finish(grpc::Status::OK);
+  return reactor;
+}
+
+}  // namespace skinframe::server

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/api/job_service.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <utility>
+
+#include "server/api/answer.h"
+#include "server/api/spec_validation.h"
+#include "server/api/watch_call.h"
+#include "server/jobs/decisions.h"
+
+namespace skinframe::server {
+namespace {
+
+constexpr int kDefaultPage = 50;
+constexpr int kLargestPage = 500;
+constexpr std::size_t kLargestPageBytes = std::size_t{3} << 20;  // below gRPC's default limit of 4 MiB a message
+constexpr char kRetryAfterMs[] = "1000";
+
+// A page token is the ordinal of the page's last job. 0: the first page; -1: not one of ours.
+std::int64_t parse_page_token(const std::string& token) {
+  if (token.empty()) return 0;
+  std::int64_t ordinal = 0;
+  const char* end = token.data() + token.size();
+  const auto [at, error] = std::from_chars(token.data(), end, ordinal);
+  return error == std::errc() && at == end && ordinal > 0 ? ordinal : -1;
+}
+
+}  // namespace
+
+grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* context,
+                                                const v1::SubmitJobRequest* request,
+                                                v1::SubmitJobResponse* response) {
+  return answer_on(parts_.executor, context, [=, this] { return submit(*context, *request, *response); });
+}
+
+absl::Status JobService::submit(grpc::CallbackServerContext& context, const v1::SubmitJobRequest& request,
+                                v1::SubmitJobResponse& response) {
+  if (auto status = validate_request_id(request.request_id()); !status.ok()) return status;
+  if (auto status = validate_spec(request.spec(), parts_.catalog); !status.ok()) return status;
+  const auto mesh = parts_.artifacts.stat(request.spec().mesh_sha256());
+  if (!mesh.ok()) return mesh.status();
+  if (!mesh->complete) {
+    return absl::FailedPreconditionError(
+        fmt::format("the mesh {} is not uploaded; upload it first", request.spec().mesh_sha256()));
+  }
+  if (request.validate_only()) {
+    for (std::string& check : checks_that_hold(request.spec())) response.add_checks(std::move(check));
+    return absl::OkStatus();
+  }
+  auto created = parts_.store.create(decide_submit(new_record(request), parts_.clock.now()), parts_.queue_limit);
+  if (absl::IsResourceExhausted(created.status())) context.AddTrailingMetadata("retry-after-ms", kRetryAfterMs);
+  if (!created.ok()) return created.status();
+  *response.mutable_job() = std::move(created->record.job);
+  if (response.job().state() == v1::JOB_STATE_QUEUED) {
+    // The job is durable whatever comes of this: a failure to count is not one to submit.
+    const auto before = parts_.store.queued_before(response.job().job_id());
+    if (before.ok()) response.set_queued_before(static_cast<std::int32_t>(*before));
+  }
+  return absl::OkStatus();
+}
+
+JobRecord JobService::new_record(const v1::SubmitJobRequest& request) {
+  JobRecord record;
+  record.request_id = request.request_id();
+  record.spec_digest = digest_of(request.spec());
+  record.job.set_job_id(parts_.ids.next());
+  *record.job.mutable_spec() = request.spec();
+  for (const v1::PrinterRequest& wanted : request.spec().printers()) {  // validated: all are known
+    const v1::PrinterProfile& printer = *parts_.catalog.find_printer(wanted.printer_id());
+    const std::string& material_id =
+        wanted.material_id().empty() ? printer.default_material_id() : wanted.material_id();
+    record.printers.push_back(printer);
+    record.materials.push_back(*parts_.catalog.find_material(material_id));
+  }
+  return record;
+}
+
+grpc::ServerUnaryReactor* JobService::GetJob(grpc::CallbackServerContext* context, const v1::GetJobRequest* request,
+                                             v1::Job* response) {
+  return answer_on(parts_.executor, context, [=, this]() -> absl::Status {
+    auto record = parts_.store.get(request->job_id());
+    if (record.ok()) *response = std::move(record->job);
+    return record.status();
+  });
+}
+
+grpc::ServerUnaryReactor* JobService::ListJobs(grpc::CallbackServerContext* context,
+                                               const v1::ListJobsRequest* request, v1::ListJobsResponse* response) {
+  return answer_on(parts_.executor, context, [=, this] { return list(*request, *response); });
+}
+
+absl::Status JobService::list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
+  if (request.page_size() < 0 || request.page_size() > kLargestPage) {
+    return absl::InvalidArgumentError(
+        fmt::format("page_size is {}, must be within 1 .. {}, or 0 for {}", request.page_size(), kLargestPage,
+                    kDefaultPage));
+  }
+  ListQuery query;
+  query.limit = request.page_size() == 0 ? kDefaultPage : request.page_size();
+  query.before_ordinal = parse_page_token(request.page_token());
+  if (query.before_ordinal < 0) return absl::InvalidArgumentError("page_token is not one that ListJobs gave");
+  for (const int state : request.states()) {
+    if (state == v1::JOB_STATE_UNSPECIFIED || !v1::JobState_IsValid(state)) {
+      return absl::InvalidArgumentError(fmt::format("states has {}, which is no state", state));
+    }
+    if (std::find(query.states.begin(), query.states.end(), state) == query.states.end()) {
+      query.states.push_back(static_cast<v1::JobState>(state));
+    }
+  }
+  if (request.labels_size() > 16) return absl::InvalidArgumentError("labels has more than 16 entries");
+  query.labels.insert(request.labels().begin(), request.labels().end());
+
+  auto page = parts_.store.list(query);
+  if (!page.ok()) return page.status();
+  bool more = page->more;
+  std::size_t bytes = 0;
+  std::int64_t last = 0;
+  for (ListPage::Entry& entry : page->entries) {
+    bytes += entry.job.ByteSizeLong();
+    if (last != 0 && bytes > kLargestPageBytes) {
+      more = true;
+      break;
+    }
+    last = entry.ordinal;
+    *response.add_jobs() = std::move(entry.job);
+  }
+  if (more) response.set_next_page_token(std::to_string(last));
+  return absl::OkStatus();
+}
+
+grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* context,
+                                                const v1::CancelJobRequest* request, v1::Job* response) {
+  return answer_on(parts_.executor, context, [=, this]() -> absl::Status {
+    const Time now = parts_.clock.now();
+    auto after = parts_.store.modify(request->job_id(),
+                                     [now](const JobRecord& record) { return decide_cancel(record, now); });
+    if (after.ok()) *response = std::move(after->job);
+    return after.status();
+  });
+}
+
+grpc::ServerUnaryReactor* JobService::DeleteJob(grpc::CallbackServerContext* context,
+                                                const v1::DeleteJobRequest* request, v1::DeleteJobResponse*) {
+  return answer_on(parts_.executor, context,
+                   [=, this] { return parts_.store.remove(request->job_id(), permit_delete); });
+}
+
+grpc::ServerWriteReactor<v1::JobEvent>* JobService::WatchJob(grpc::CallbackServerContext*,
+                                                             const v1::WatchJobRequest* request) {
+  return WatchCall::start(parts_, request->job_id(), request->after_sequence());
+}
+
+}  // namespace skinframe::server

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/api/spec_validation.h"
+
+#include <fmt/format.h>
+#include <google/protobuf/io/coded_stream.h>
+#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "server/artifacts/artifact_store.h"
+#include "server/jobs/job_id.h"
+
+namespace skinframe::server {
+namespace {
+
+constexpr int kMostPrinters = 16;
+constexpr int kMostLoads = 64;
+constexpr int kMostLabels = 16;
+constexpr std::size_t kLongestName = 255;
+constexpr double kFarthestPoint_mm = 10'000;
+constexpr double kLargestForce_n = 1e6;
+constexpr std::int64_t kLongestDeadline_s = 365LL * 24 * 3600;
+
+template <class... Args>
+absl::Status invalid(fmt::format_string<Args...> format, Args&&... args) {
+  return absl::InvalidArgumentError(fmt::format(format, std::forward<Args>(args)...));
+}
+
+absl::Status not_built(std::string_view option) {
+  return absl::UnimplementedError(fmt::format("{} is not built in this version of skinframe", option));
+}
+
+bool made_of(std::string_view text, std::string_view extra, bool upper_case) {
+  return std::all_of(text.begin(), text.end(), [&](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || (upper_case && c >= 'A' && c <= 'Z') ||
+           extra.find(c) != std::string_view::npos;
+  });
+}
+
+// True also refuses what is not a number.
+bool outside(double value, double low, double high) { return !(value >= low && value <= high); }
+
+absl::Status check_input(const v1::JobSpec& spec) {
+  if (spec.input_case() == v1::JobSpec::kFrameProblemSha256) return not_built("frame_problem_sha256");
+  if (spec.input_case() != v1::JobSpec::kMeshSha256) return invalid("spec.mesh_sha256 is missing");
+  if (!is_sha256(spec.mesh_sha256())) return invalid("spec.mesh_sha256 must be 64 lower-case hexadecimal digits");
+  if (spec.mesh_name().size() > kLongestName) {
+    return invalid("spec.mesh_name has {} bytes, at most {} are allowed", spec.mesh_name().size(), kLongestName);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_printers(const v1::JobSpec& spec, const Catalog& catalog) {
+  if (spec.printers_size() < 1 || spec.printers_size() > kMostPrinters) {
+    return invalid("spec.printers has {} entries, must have 1 .. {}; known: {}", spec.printers_size(), kMostPrinters,
+                   catalog.printer_ids());
+  }
+  std::set<std::string> seen;
+  for (const v1::PrinterRequest& printer : spec.printers()) {
+    if (catalog.find_printer(printer.printer_id()) == nullptr) {
+      return invalid("unknown printer \"{}\"; known: {}", printer.printer_id(), catalog.printer_ids());
+    }
+    if (!printer.material_id().empty() && catalog.find_material(printer.material_id()) == nullptr) {
+      return invalid("unknown material \"{}\"; known: {}", printer.material_id(), catalog.material_ids());
+    }
+    if (!seen.insert(printer.printer_id()).second) {
+      return invalid("printer \"{}\" is named twice", printer.printer_id());
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_vector(const std::string& field, const v1::Vec3& vector, double limit, std::string_view unit) {
+  if (outside(vector.x(), -limit, limit) || outside(vector.y(), -limit, limit) || outside(vector.z(), -limit, limit)) {
+    return invalid("{} is ({}, {}, {}), each component must be within -{} .. {} {}", field, vector.x(), vector.y(),
+                   vector.z(), limit, limit, unit);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_load(const v1::Load& load, int index) {
+  const std::string field = fmt::format("spec.loads[{}]", index);
+  if (load.name().empty() || load.name().size() > 32 || !made_of(load.name(), "-", false)) {
+    return invalid("{}.name is \"{}\", must be 1 .. 32 of [a-z0-9-]", field, load.name());
+  }
+  switch (load.where_case()) {
+    case v1::Load::kPlace:
+      if (load.place() == v1::PLACE_UNSPECIFIED || !v1::Place_IsValid(load.place())) {
+        return invalid("{}.place must be top, bottom, left, right, front or back", field);
+      }
+      break;
+    case v1::Load::kPointMm:
+      if (auto status = check_vector(field + ".point_mm", load.point_mm(), kFarthestPoint_mm, "mm"); !status.ok()) {
+        return status;
+      }
+      break;
+    case v1::Load::WHERE_NOT_SET: return invalid("{} needs a place or a point_mm", field);
+  }
+  if (!load.has_force_n()) return invalid("{}.force_n is missing", field);
+  if (auto status = check_vector(field + ".force_n", load.force_n(), kLargestForce_n, "N"); !status.ok()) return status;
+  if (outside(load.radius_mm(), 0, 1000)) {
+    return invalid("{}.radius_mm is {}, must be within 0 .. 1000 (0: the default of 5)", field, load.radius_mm());
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_loads(const v1::JobSpec& spec) {
+  if (spec.loads_size() > kMostLoads) {
+    return invalid("spec.loads has {} entries, at most {} are allowed", spec.loads_size(), kMostLoads);
+  }
+  for (int i = 0; i < spec.loads_size(); ++i) {
+    if (auto status = check_load(spec.loads(i), i); !status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_range(const char* field, bool present, double value, double low, double high) {
+  if (!present || !outside(value, low, high)) return absl::OkStatus();
+  return invalid("options.{} is {}, must be within {} .. {}", field, value, low, high);
+}
+
+absl::Status check_enum(const char* field, bool known, int value, const char* valid) {
+  if (known) return absl::OkStatus();
+  return invalid("options.{} is {}, must be one of {}", field, value, valid);
+}
+
+absl::Status check_options(const v1::JobOptions& o) {
+  const absl::Status all[] = {
+      check_enum("up", v1::Axis_IsValid(o.up()), o.up(), "x, y, z"),
+      check_enum("balance", v1::Balance_IsValid(o.balance()), o.balance(), "auto, require, off"),
+      check_enum("smooth", v1::Smooth_IsValid(o.smooth()), o.smooth(), "auto, on, off"),
+      check_enum("orient", v1::Orient_IsValid(o.orient()), o.orient(), "keep, best"),
+      check_enum("order", v1::StageOrder_IsValid(o.order()), o.order(), "tight, paper"),
+      check_range("size_mm", o.has_size_mm(), o.size_mm(), 1, 2000),
+      check_range("skin_nodes", o.has_skin_nodes(), o.skin_nodes(), 12, 20000),
+      check_range("internal_nodes", o.has_internal_nodes(), o.internal_nodes(), 0, 20000),
+      check_range("voxel_mm", o.has_voxel_mm(), o.voxel_mm(), 0.02, 5),
+      check_range("displacement_limit_mm", o.has_displacement_limit_mm(), o.displacement_limit_mm(), 0.001, 100),
+  };
+  for (const absl::Status& status : all) {
+    if (!status.ok()) return status;
+  }
+  if (o.smooth() == v1::SMOOTH_ON) return not_built("options.smooth on");
+  if (o.orient() == v1::ORIENT_BEST) return not_built("options.orient best");
+  return absl::OkStatus();
+}
+
+absl::Status check_labels(const v1::JobSpec& spec) {
+  if (spec.labels_size() > kMostLabels) {
+    return invalid("spec.labels has {} entries, at most {} are allowed", spec.labels_size(), kMostLabels);
+  }
+  for (const auto& [key, value] : spec.labels()) {
+    if (key.empty() || key.size() > 63 || !made_of(key, "._-", false)) {
+      return invalid("label key \"{}\" must be 1 .. 63 of [a-z0-9._-]", key);
+    }
+    if (value.size() > kLongestName) {
+      return invalid("the value of label \"{}\" has {} bytes, at most {} are allowed", key, value.size(), kLongestName);
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_schedule(const v1::JobSpec& spec) {
+  if (spec.priority() < -100 || spec.priority() > 100) {
+    return invalid("spec.priority is {}, must be within -100 .. 100", spec.priority());
+  }
+  if (!spec.has_deadline()) return absl::OkStatus();
+  const auto& deadline = spec.deadline();
+  const bool positive = deadline.seconds() > 0 || (deadline.seconds() == 0 && deadline.nanos() >= 1'000'000);
+  if (!positive || deadline.seconds() > kLongestDeadline_s || deadline.nanos() < 0 || deadline.nanos() > 999'999'999) {
+    return invalid("spec.deadline must be within 0.001 s .. {} s", kLongestDeadline_s);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status validate_spec(const v1::JobSpec& spec, const Catalog& catalog) {
+  if (auto status = check_input(spec); !status.ok()) return status;
+  if (auto status = check_printers(spec, catalog); !status.ok()) return status;
+  if (auto status = check_loads(spec); !status.ok()) return status;
+  if (auto status = check_options(spec.options()); !status.ok()) return status;
+  if (auto status = check_labels(spec); !status.ok()) return status;
+  if (auto status = check_schedule(spec); !status.ok()) return status;
+  if (!spec.warm_start_job_id().empty()) return not_built("warm_start_job_id");
+  return absl::OkStatus();
+}
+
+std::vector<std::string> checks_that_hold(const v1::JobSpec& spec) {
+  std::vector<std::string> checks = {"the mesh is uploaded"};
+  for (const v1::PrinterRequest& printer : spec.printers()) {
+    checks.push_back(fmt::format("printer {} and its material are known", printer.printer_id()));
+  }
+  if (spec.loads_size() > 0) checks.push_back(fmt::format("{} load(s) are within range", spec.loads_size()));
+  checks.push_back("all options are within range and built in this version");
+  return checks;
+}
+
+absl::Status validate_request_id(std::string_view request_id) {
+  if (request_id.size() <= 64 && made_of(request_id, "._-", true)) return absl::OkStatus();
+  return invalid("request_id must be 1 .. 64 of [A-Za-z0-9._-], or empty");
+}
+
+std::string digest_of(const v1::JobSpec& spec) {
+  std::string bytes;
+  {
+    google::protobuf::io::StringOutputStream stream(&bytes);
+    google::protobuf::io::CodedOutputStream coded(&stream);
+    coded.SetSerializationDeterministic(true);
+    spec.SerializeToCodedStream(&coded);
+  }
+  return sha256_hex(bytes);
+}
+
+}  // namespace skinframe::server

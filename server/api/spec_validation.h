@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a job can be accepted as it is written. Messages name the field as the client wrote it, its value and
+// the valid range, and list the known ids.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "server/catalog/catalog.h"
+#include "skinframe/v1/job.pb.h"
+
+namespace skinframe::server {
+
+// INVALID_ARGUMENT, or UNIMPLEMENTED for what the API has and this version does not build. Meshes are not opened:
+// what is wrong inside one is the worker's to say.
+absl::Status validate_spec(const v1::JobSpec& spec, const Catalog& catalog);
+
+// What validate_spec has found good, a sentence each.
+std::vector<std::string> checks_that_hold(const v1::JobSpec& spec);
+
+// 1 .. 64 of [A-Za-z0-9._-], or empty.
+absl::Status validate_request_id(std::string_view request_id);
+
+// SHA-256 of the spec's canonical bytes: maps in the order of their keys.
+std::string digest_of(const v1::JobSpec& spec);
+
+}  // namespace skinframe::server

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/api/worker_service.h"
+
+#include <spdlog/spdlog.h>
+
+#include <string>
+
+#include "server/api/answer.h"
+#include "server/api/lease_call.h"
+#include "server/api/worker_validation.h"
+#include "server/jobs/decisions.h"
+
+namespace skinframe::server {
+namespace {
+
+// A late worker is harmless, and still worth a line: it tells of a partition or of a lease that is too short.
+absl::Status log_refusal(const absl::Status& status, const std::string& job_id, const char* call) {
+  if (absl::IsAborted(status)) spdlog::warn("job={} {} refused: {}", job_id, call, std::string(status.message()));
+  return status;
+}
+
+// A worker may hold a token of a job that was deleted meanwhile: its token is the job's no longer.
+absl::Status gone_is_aborted(const absl::Status& status) {
+  return absl::IsNotFound(status) ? absl::AbortedError(status.message()) : status;
+}
+
+}  // namespace
+
+grpc::ServerUnaryReactor* WorkerService::Lease(grpc::CallbackServerContext*, const v1::LeaseRequest* request,
+                                               v1::LeaseResponse* response) {
+  return LeaseCall::start(parts_, *request, *response);
+}
+
+grpc::ServerUnaryReactor* WorkerService::Heartbeat(grpc::CallbackServerContext* context,
+                                                   const v1::HeartbeatRequest* request,
+                                                   v1::HeartbeatResponse* response) {
+  return answer_on(parts_.executor, context, [=, this] {
+    return log_refusal(heartbeat(*request, *response), request->job_id(), "heartbeat");
+  });
+}
+
+absl::Status WorkerService::heartbeat(const v1::HeartbeatRequest& request, v1::HeartbeatResponse& response) {
+  if (auto status = validate_heartbeat(request); !status.ok()) return status;
+  const Time now = parts_.clock.now();
+  const auto after = parts_.store.modify(request.job_id(), [&](const JobRecord& record) {
+    return decide_heartbeat(record, request, now, parts_.policy);
+  });
+  if (!after.ok()) return gone_is_aborted(after.status());
+  response.set_cancel(must_stop(*after, now));
+  *response.mutable_lease_expire_time() = to_timestamp(after->lease.expires);
+  return absl::OkStatus();
+}
+
+grpc::ServerUnaryReactor* WorkerService::Complete(grpc::CallbackServerContext* context,
+                                                  const v1::CompleteRequest* request, v1::CompleteResponse*) {
+  return answer_on(parts_.executor, context,
+                   [=, this] { return log_refusal(complete(*request), request->job_id(), "completion"); });
+}
+
+absl::Status WorkerService::complete(const v1::CompleteRequest& request) {
+  if (auto status = validate_complete(request); !status.ok()) return status;
+  const absl::Status files = files_are_there(request, parts_.artifacts);
+  const Time now = parts_.clock.now();
+  const auto after = parts_.store.modify(request.job_id(), [&](const JobRecord& record) -> Decision {
+    Decision decision = decide_complete(record, request, now, parts_.policy);
+    const bool accepted = decision.ok() && decision->has_value();
+    if (accepted && !files.ok()) return files;  // a late worker hears of its token first
+    return decision;
+  });
+  return gone_is_aborted(after.status());
+}
+
+}  // namespace skinframe::server

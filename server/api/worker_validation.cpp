@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/api/worker_validation.h"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <string>
+#include <string_view>
+
+namespace skinframe::server {
+namespace {
+
+constexpr std::size_t kLongestId = 128;
+constexpr std::size_t kLongestDetail = 4096;
+constexpr std::size_t kLongestPath = 255;
+constexpr int kMostProgress = 100;
+constexpr int kMostPrinters = 16;
+constexpr int kMostFiles = 1000;
+
+template <class... Args>
+absl::Status invalid(fmt::format_string<Args...> format, Args&&... args) {
+  return absl::InvalidArgumentError(fmt::format(format, std::forward<Args>(args)...));
+}
+
+template <class Results>
+absl::Status check_printers(const Results& printers) {
+  if (printers.size() > kMostPrinters) return invalid("printers has more than {} entries", kMostPrinters);
+  for (const v1::PrinterResult& printer : printers) {
+    if (printer.printer_id().empty() || printer.printer_id().size() > kLongestId) {
+      return invalid("printers.printer_id must have 1 .. {} bytes", kLongestId);
+    }
+    if (printer.detail().size() > kLongestDetail) {
+      return invalid("printers.detail has {} bytes, at most {} are allowed", printer.detail().size(), kLongestDetail);
+    }
+  }
+  return absl::OkStatus();
+}
+
+// Relative, each part a plain name: it becomes a file below the client's folder.
+bool is_safe_path(std::string_view path) {
+  if (path.empty() || path.size() > kLongestPath || path.find('\0') != std::string_view::npos) return false;
+  if (path.find('\\') != std::string_view::npos) return false;
+  while (!path.empty()) {
+    const std::size_t end = path.find('/');
+    const std::string_view part = path.substr(0, end);
+    if (part.empty() || part == "." || part == "..") return false;
+    if (end == std::string_view::npos) return true;
+    path.remove_prefix(end + 1);
+  }
+  return false;  // ends with a slash
+}
+
+}  // namespace
+
+absl::Status validate_lease(const v1::LeaseRequest& request) {
+  if (request.worker_id().empty() || request.worker_id().size() > kLongestId) {
+    return invalid("worker_id must have 1 .. {} bytes", kLongestId);
+  }
+  if (request.instance_id().empty() || request.instance_id().size() > kLongestId) {
+    return invalid("instance_id must have 1 .. {} bytes", kLongestId);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status validate_heartbeat(const v1::HeartbeatRequest& request) {
+  if (request.progress_size() > kMostProgress) {
+    return invalid("progress has {} entries, at most {} are allowed", request.progress_size(), kMostProgress);
+  }
+  return check_printers(request.printers());
+}
+
+absl::Status validate_complete(const v1::CompleteRequest& request) {
+  const v1::JobState state = request.state();
+  if (state != v1::JOB_STATE_SUCCEEDED && state != v1::JOB_STATE_FAILED && state != v1::JOB_STATE_CANCELLED) {
+    return invalid("state must be SUCCEEDED, FAILED or CANCELLED");
+  }
+  const v1::Reason reason = request.reason();
+  if (!v1::Reason_IsValid(reason)) return invalid("reason {} is unknown", static_cast<int>(reason));
+  if (state == v1::JOB_STATE_SUCCEEDED && reason != v1::REASON_UNSPECIFIED && reason != v1::REASON_PARTIAL) {
+    return invalid("reason with SUCCEEDED must be none or PARTIAL");
+  }
+  if (state == v1::JOB_STATE_FAILED && reason == v1::REASON_UNSPECIFIED) return invalid("FAILED needs a reason");
+  const bool attempt_failed = reason == v1::REASON_CRASHED || reason == v1::REASON_OUT_OF_MEMORY;
+  if (request.retryable() && !(state == v1::JOB_STATE_FAILED && attempt_failed)) {
+    return invalid("retryable needs FAILED with CRASHED or OUT_OF_MEMORY");
+  }
+  if (request.detail().size() > kLongestDetail) {
+    return invalid("detail has {} bytes, at most {} are allowed", request.detail().size(), kLongestDetail);
+  }
+  if (request.files_size() > kMostFiles) return invalid("files has more than {} entries", kMostFiles);
+  std::set<std::string_view> paths;
+  for (const v1::ResultFile& file : request.files()) {
+    if (!is_safe_path(file.path())) return invalid("files.path \"{}\" is not a plain relative path", file.path());
+    if (!is_sha256(file.sha256())) return invalid("files.sha256 of \"{}\" is not a SHA-256", file.path());
+    if (!paths.insert(file.path()).second) return invalid("files.path \"{}\" is there twice", file.path());
+  }
+  return check_printers(request.printers());
+}
+
+absl::Status files_are_there(const v1::CompleteRequest& request, const ArtifactStore& artifacts) {
+  for (const v1::ResultFile& file : request.files()) {
+    const auto facts = artifacts.stat(file.sha256());
+    if (!facts.ok()) return facts.status();
+    if (!facts->complete) {
+      return absl::FailedPreconditionError(fmt::format("file \"{}\" ({}) is not uploaded", file.path(), file.sha256()));
+    }
+    if (facts->size_bytes != file.size_bytes()) {
+      return absl::FailedPreconditionError(fmt::format("file \"{}\" has {} bytes, not {}", file.path(),
+                                                       facts->size_bytes, file.size_bytes()));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace skinframe::server

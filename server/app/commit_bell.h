@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// Passes on what was committed: wakes the job's watchers and waiting workers, and writes the log line of each change
+// of state.
+#pragma once
+
+#include <atomic>
+
+#include "server/events/watch_hub.h"
+#include "server/leases/lease_desk.h"
+#include "server/store/job_store.h"
+
+namespace skinframe::server {
+
+class CommitBell final : public CommitListener {
+ public:
+  explicit CommitBell(WatchHub& hub) : hub_(hub) {}
+
+  // The desk needs the store, and the store this bell: so the desk comes last.
+  void connect(LeaseDesk* desk) { desk_ = desk; }
+
+  void committed(const JobRecord& record, bool state_changed) override;
+  void removed(const std::string& job_id) override;
+
+ private:
+  WatchHub& hub_;
+  std::atomic<LeaseDesk*> desk_ = nullptr;
+};
+
+}  // namespace skinframe::server

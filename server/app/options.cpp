@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/app/options.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <sstream>
+
+#include "server/app/listen_address.h"
+
+namespace skinframe::server {
+namespace {
+
+constexpr char kExamples[] =
+    "\nExamples:\n"
+    "  skinframe-server --data /var/lib/skinframe\n"
+    "      for this machine alone, on 127.0.0.1:7350\n"
+    "  skinframe-server --data DIR --listen 0.0.0.0:7350 --tls-cert server.crt --tls-key server.key\n"
+    "      for the network, encrypted\n"
+    "  skinframe-server --data DIR --listen 127.0.0.1:0 --port-file DIR/port\n"
+    "      on a free port, written to the file once it listens\n"
+    "\nExit codes: 0 stopped by SIGTERM or SIGINT; 1 cannot run (port taken, folder in use or not writable); 2 wrong "
+    "usage.\n";
+
+Milliseconds from_seconds(double seconds) {
+  return Milliseconds(static_cast<std::int64_t>(std::llround(seconds * 1000)));
+}
+
+std::string text_of(const CLI::App& app, const CLI::Error& error, int& code) {
+  std::ostringstream out;
+  std::ostringstream err;
+  code = app.exit(error, out, err);
+  return out.str() + err.str();
+}
+
+}  // namespace
+
+absl::Status ServerOptions::validate() const {
+  if (data.empty()) return absl::InvalidArgumentError("--data DIR is missing: the folder for jobs and artifacts");
+  if (store.starts_with("postgresql:") || store.starts_with("postgres:")) {
+    return absl::UnimplementedError("--store postgresql is not built in this version of skinframe; use sqlite");
+  }
+  if (store != "sqlite") {
+    return absl::InvalidArgumentError(fmt::format("--store \"{}\" is unknown; known: sqlite", store));
+  }
+  if (tls_cert.empty() != tls_key.empty()) {
+    return absl::InvalidArgumentError("--tls-cert and --tls-key must be given together");
+  }
+  if (queue_limit < 1 || queue_limit > 1'000'000) {
+    return absl::InvalidArgumentError(fmt::format("--queue-limit is {}, must be within 1 .. 1000000", queue_limit));
+  }
+  if (auto status = policy.validate(); !status.ok()) return absl::InvalidArgumentError("--" + std::string(status.message()));
+  if (auto status = check_listen_address(listen); !status.ok()) return status;
+  if (tls_cert.empty() && !allow_plaintext && !is_loopback(listen)) {
+    return absl::InvalidArgumentError(fmt::format(
+        "--listen {} is reachable from the network: give --tls-cert and --tls-key, or --allow-plaintext", listen));
+  }
+  return absl::OkStatus();
+}
+
+std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* const* argv) {
+  ServerOptions options;
+  double lease_seconds = static_cast<double>(options.policy.lease.count()) / 1000;
+  double heartbeat_seconds = static_cast<double>(options.policy.heartbeat.count()) / 1000;
+  CLI::App app("Keeps the jobs of skinframe: takes them from clients, gives them to workers, keeps their results.",
+               "skinframe-server");
+  app.footer(kExamples);
+  app.set_version_flag("--version", "skinframe-server " SKINFRAME_VERSION);
+  app.add_option("--listen", options.listen, "address:port; port 0 takes a free one")->capture_default_str();
+  app.add_option("--data", options.data, "folder for jobs and artifacts; made when absent; one server at a time");
+  app.add_option("--tls-cert", options.tls_cert, "PEM certificate chain");
+  app.add_option("--tls-key", options.tls_key, "PEM private key");
+  app.add_flag("--allow-plaintext", options.allow_plaintext, "serve the network without TLS");
+  app.add_option("--store", options.store, "where jobs are kept: sqlite (in --data)")->capture_default_str();
+  app.add_option("--lease-seconds", lease_seconds, "a worker silent for so long loses its job")->capture_default_str();
+  app.add_option("--heartbeat-seconds", heartbeat_seconds, "how often workers report")->capture_default_str();
+  app.add_option("--max-attempts", options.policy.max_attempts, "lost attempts after which a job FAILED")
+      ->capture_default_str();
+  app.add_option("--queue-limit", options.queue_limit, "queued jobs beyond which submission is refused")
+      ->capture_default_str();
+  app.add_option("--port-file", options.port_file, "written with host:port once the server listens");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    int code = 0;
+    const std::string text = text_of(app, error, code);
+    return EarlyEnd{text, code == 0 ? 0 : 2};
+  }
+  if (!std::isfinite(lease_seconds) || !std::isfinite(heartbeat_seconds) || std::abs(lease_seconds) > 1e6 ||
+      std::abs(heartbeat_seconds) > 1e6) {
+    return EarlyEnd{"--lease-seconds and --heartbeat-seconds must be plain numbers of seconds\n", 2};
+  }
+  options.policy.lease = from_seconds(lease_seconds);
+  options.policy.heartbeat = from_seconds(heartbeat_seconds);
+  return options;
+}
+
+}  // namespace skinframe::server

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The command line of skinframe-server.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <variant>
+
+#include "absl/status/status.h"
+#include "server/jobs/attempt_policy.h"
+
+namespace skinframe::server {
+
+struct ServerOptions {
+  std::string listen = "127.0.0.1:7350";
+  std::filesystem::path data;      // holds the store and the artifacts
+  std::filesystem::path tls_cert;  // PEM chain; both or none
+  std::filesystem::path tls_key;
+  bool allow_plaintext = false;
+  std::string store = "sqlite";
+  AttemptPolicy policy;
+  std::int64_t queue_limit = 10'000;  // 1 .. 1,000,000 queued jobs
+  std::filesystem::path port_file;    // empty: none
+
+  // One sentence for what does not go together, is out of range, or is not built.
+  absl::Status validate() const;
+};
+
+// The command line was --help, --version or wrong: what to print, and the exit code.
+struct EarlyEnd {
+  std::string text;
+  int exit_code;  // 0, or 2 for wrong usage
+};
+
+std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* const* argv);
+
+}  // namespace skinframe::server

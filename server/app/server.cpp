@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/app/server.h"
+
+#include <fmt/format.h>
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/health_check_service_interface.h>
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "server/api/artifact_service.h"
+#include "server/api/catalog_service.h"
+#include "server/api/job_service.h"
+#include "server/api/worker_service.h"
+#include "server/app/commit_bell.h"
+#include "server/app/data_folder.h"
+#include "server/app/listen_address.h"
+#include "server/leases/deadline_watch.h"
+#include "server/leases/duty_runner.h"
+#include "server/leases/lease_reaper.h"
+#include "server/store/sqlite_store.h"
+
+namespace skinframe::server {
+namespace {
+
+constexpr int kExecutorThreads = 32;  // as many writes as one commit can hold
+constexpr std::size_t kMostWatchers = 10'000;
+constexpr Milliseconds kDutyPause{100};
+constexpr std::chrono::seconds kStopPatience{3};
+constexpr int kLargestMessageBytes = 4 << 20;
+constexpr const char* kServices[] = {"skinframe.v1.JobService", "skinframe.v1.ArtifactService",
+                                     "skinframe.v1.CatalogService", "skinframe.v1.WorkerService"};
+
+// A partition is noticed within some 15 s on this side, and clients may ping every 5 s, calls or none, without
+// being thrown out. One port belongs to one server.
+void set_connection_rules(grpc::ServerBuilder& builder) {
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 10'000);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 5'000);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 1'000);
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  builder.SetMaxReceiveMessageSize(kLargestMessageBytes);
+}
+
+absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> credentials(const ServerOptions& options) {
+  if (options.tls_cert.empty()) return grpc::InsecureServerCredentials();
+  auto certificate = read_whole_file(options.tls_cert);
+  if (!certificate.ok()) return certificate.status();
+  auto key = read_whole_file(options.tls_key);
+  if (!key.ok()) return key.status();
+  grpc::SslServerCredentialsOptions tls(GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE);
+  tls.pem_key_cert_pairs.push_back({*std::move(key), *std::move(certificate)});
+  return grpc::SslServerCredentials(tls);
+}
+
+}  // namespace
+
+// In the order in which each needs those before it.
+struct Server::Rooms {
+  Rooms(DataFolder locked, const ServerOptions& options) : folder(std::move(locked)), policy(options.policy) {}
+
+  DataFolder folder;
+  AttemptPolicy policy;
+  Catalog catalog = built_in_catalog();
+  WatchHub hub{kMostWatchers};
+  CommitBell bell{hub};
+  std::unique_ptr<ArtifactStore> artifacts;
+  std::unique_ptr<JobStore> store;
+  Executor executor{kExecutorThreads};
+  std::optional<LeaseDesk> desk;
+  std::optional<LeaseReaper> reaper;
+  std::optional<DeadlineWatch> deadlines;
+  std::optional<DutyRunner> duties;
+  std::optional<JobService> jobs;
+  std::optional<ArtifactService> files;
+  std::optional<CatalogService> profiles;
+  std::optional<WorkerService> workers;
+  std::unique_ptr<grpc::Server> grpc_server;
+  std::string address;
+
+  absl::Status open(const ServerOptions& options, const Clock& clock, IdGenerator& ids);
+  absl::Status listen(const ServerOptions& options);
+};
+
+absl::Status Server::Rooms::open(const ServerOptions& options, const Clock& clock, IdGenerator& ids) {
+  auto opened_artifacts = ArtifactStore::open(folder.artifacts(), ArtifactLimits{});
+  if (!opened_artifacts.ok()) return opened_artifacts.status();
+  artifacts = *std::move(opened_artifacts);
+  auto opened_store = open_sqlite_store(folder.store_file(), &bell);
+  if (!opened_store.ok()) return opened_store.status();
+  store = *std::move(opened_store);
+
+  desk.emplace(*store, executor, clock, policy);
+  bell.connect(&*desk);
+  reaper.emplace(*store, policy, clock.now());
+  deadlines.emplace(*store);
+
+  const Parts parts{*store, *artifacts, catalog, hub, *desk, executor, clock, ids, policy, options.queue_limit};
+  jobs.emplace(parts);
+  files.emplace(parts);
+  profiles.emplace(catalog);
+  workers.emplace(parts);
+  duties.emplace(clock, std::vector<Duty*>{&*reaper, &*deadlines, &*desk}, kDutyPause);
+  return absl::OkStatus();
+}
+
+absl::Status Server::Rooms::listen(const ServerOptions& options) {
+  grpc::EnableDefaultHealthCheckService(true);
+  grpc::reflection::InitProtoReflectionServerBuilderPlugin();
+  const auto allowed = credentials(options);
+  if (!allowed.ok()) return allowed.status();
+  grpc::ServerBuilder builder;
+  set_connection_rules(builder);
+  int port = 0;
+  builder.AddListeningPort(options.listen, *allowed, &port);
+  builder.RegisterService(&*jobs);
+  builder.RegisterService(&*files);
+  builder.RegisterService(&*profiles);
+  builder.RegisterService(&*workers);
+  grpc_server = builder.BuildAndStart();
+  if (grpc_server == nullptr || port == 0) {
+    grpc_server.reset();
+    return absl::UnavailableError(fmt::format(
+        "cannot listen on {}: the address is in use or not this machine's{}", options.listen,
+        options.tls_cert.empty() ? "" : ", or the TLS files are not a certificate and its key"));
+  }
+  for (const char* service : kServices) grpc_server->GetHealthCheckService()->SetServingStatus(service, true);
+  address = with_port(options.listen, port);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::unique_ptr<Server>> Server::start(const ServerOptions& options, const Clock& clock,
+                                                      IdGenerator& ids) {
+  if (auto status = options.validate(); !status.ok()) return status;
+  auto folder = DataFolder::lock(options.data);
+  if (!folder.ok()) return folder.status();
+  std::unique_ptr<Server> server(new Server(std::make_unique<Rooms>(*std::move(folder), options)));
+  if (auto status = server->rooms_->open(options, clock, ids); !status.ok()) return status;
+  if (auto status = server->rooms_->listen(options); !status.ok()) return status;
+  if (!options.port_file.empty()) {
+    auto status = write_file_at_once(options.port_file, server->address() + "\n");
+    if (!status.ok()) return status;
+  }
+  return server;
+}
+
+Server::Server(std::unique_ptr<Rooms> rooms) : rooms_(std::move(rooms)) {}
+
+Server::~Server() { stop(); }
+
+const std::string& Server::address() const { return rooms_->address; }
+
+std::shared_ptr<grpc::Channel> Server::in_process_channel() {
+  return rooms_->grpc_server->InProcessChannel(grpc::ChannelArguments());
+}
+
+void Server::stop() {
+  rooms_->duties.reset();
+  if (rooms_->desk) rooms_->desk->close();
+  rooms_->hub.close();
+  if (rooms_->grpc_server != nullptr) {
+    rooms_->grpc_server->GetHealthCheckService()->SetServingStatus(false);
+    rooms_->grpc_server->Shutdown(std::chrono::system_clock::now() + kStopPatience);
+    rooms_->grpc_server->Wait();
+    rooms_->grpc_server.reset();
+  }
+  rooms_->executor.stop();
+}
+
+}  // namespace skinframe::server

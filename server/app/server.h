@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The whole server as a value: started when it exists, stopped when it goes. main() and the tests use the same one.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include <grpcpp/grpcpp.h>
+
+#include "absl/status/statusor.h"
+#include "server/app/options.h"
+#include "server/jobs/clock.h"
+#include "server/jobs/job_id.h"
+
+namespace skinframe::server {
+
+class Server {
+ public:
+  // Opens store and artifacts, and listens. The clock outlives the server; background duties run on it.
+  static absl::StatusOr<std::unique_ptr<Server>> start(const ServerOptions& options, const Clock& clock,
+                                                       IdGenerator& ids);
+  ~Server();  // stops
+  Server(const Server&) = delete;
+  Server& operator=(const Server&) = delete;
+
+  const std::string& address() const;  // host:port as bound
+  std::shared_ptr<grpc::Channel> in_process_channel();
+
+  // Takes no new calls; ends watches and waiting leases with UNAVAILABLE; gives other calls a few seconds. What was
+  // acknowledged is durable with or without it.
+  void stop();
+
+ private:
+  struct Rooms;
+  explicit Server(std::unique_ptr<Rooms> rooms);
+  std::unique_ptr<Rooms> rooms_;
+};
+
+}  // namespace skinframe::server

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// Wakes whoever watches a job. A wake carries no event: the watcher reads the store from its own sequence number, at
+// its own pace. So no event can be lost or doubled on the way, a slow watcher holds nobody up, and each costs a few
+// bytes here.
+//
+// A watcher subscribes first and reads then: what is committed between the two wakes it once too often, never once
+// too few.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "absl/status/status.h"
+
+namespace skinframe::server {
+
+// Called on the committing thread: must be quick, and must not call the hub's subscribe or unsubscribe.
+class Watcher {
+ public:
+  virtual ~Watcher() = default;
+  virtual void wake() = 0;
+  virtual void server_stops() = 0;
+};
+
+class WatchHub {
+ public:
+  explicit WatchHub(std::size_t most_watchers) : most_watchers_(most_watchers) {}
+
+  // RESOURCE_EXHAUSTED: too many watchers. UNAVAILABLE: the server stops.
+  absl::Status subscribe(const std::string& job_id, std::shared_ptr<Watcher> watcher);
+  void unsubscribe(const std::string& job_id, const Watcher* watcher);  // no harm when not subscribed
+
+  void wake(const std::string& job_id);
+  void close();  // tells all that the server stops; nobody subscribes any more
+
+  std::size_t watchers() const;
+
+ private:
+  const std::size_t most_watchers_;
+  mutable std::mutex mutex_;
+  std::unordered_map<std::string, std::vector<std::shared_ptr<Watcher>>> by_job_;
+  std::size_t count_ = 0;
+  bool closed_ = false;
+};
+
+}  // namespace skinframe::server
