@@ -18,25 +18,6 @@ Status check_count(std::uint64_t count, std::uint64_t limit, std::string_view wh
       fmt::format("{} {} are more than the limit of {}; simplify the mesh", count, what, limit));
 }
 
-std::size_t drop_unused_vertices(TriangleMesh& mesh) {
-  std::vector<int> renamed(mesh.vertices.size(), -1);
-  for (const auto& triangle : mesh.triangles) {
-    for (const int v : triangle) renamed[v] = 0;
-  }
-  int kept = 0;
-  for (std::size_t v = 0; v < renamed.size(); ++v) {
-    if (renamed[v] < 0) continue;
-    mesh.vertices[kept] = mesh.vertices[v];
-    renamed[v] = kept++;
-  }
-  const std::size_t dropped = mesh.vertices.size() - kept;
-  mesh.vertices.resize(kept);
-  for (auto& triangle : mesh.triangles) {
-    for (int& v : triangle) v = renamed[v];
-  }
-  return dropped;
-}
-
 Result<MeshFile> finish(PolygonSoup soup, std::string format, int index_base, const ReadRequest& request) {
   const auto vertex_count = static_cast<std::int64_t>(soup.vertices.size());
   // Fans and ears alike give corners - 2 triangles a face.

@@ -39,7 +39,4 @@ Status check_count(std::uint64_t count, std::uint64_t limit, std::string_view wh
 // index_base: what the format calls its first vertex (OBJ 1, others 0), for the messages.
 Result<MeshFile> finish(PolygonSoup soup, std::string format, int index_base, const ReadRequest& request);
 
-// Drops the vertices that no triangle uses; returns how many.
-std::size_t drop_unused_vertices(TriangleMesh& mesh);
-
 }  // namespace skinframe

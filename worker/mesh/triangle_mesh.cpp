@@ -58,4 +58,23 @@ Eigen::Vector3d volume_centroid(const TriangleMesh& mesh) {
   return origin + moment / six_volumes;
 }
 
+std::size_t drop_unused_vertices(TriangleMesh& mesh) {
+  std::vector<int> renamed(mesh.vertices.size(), -1);
+  for (const auto& triangle : mesh.triangles) {
+    for (const int v : triangle) renamed[v] = 0;
+  }
+  int kept = 0;
+  for (std::size_t v = 0; v < renamed.size(); ++v) {
+    if (renamed[v] < 0) continue;
+    mesh.vertices[kept] = mesh.vertices[v];
+    renamed[v] = kept++;
+  }
+  const std::size_t dropped = mesh.vertices.size() - kept;
+  mesh.vertices.resize(kept);
+  for (auto& triangle : mesh.triangles) {
+    for (int& v : triangle) v = renamed[v];
+  }
+  return dropped;
+}
+
 }  // namespace skinframe

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace skinframe {
@@ -25,5 +26,8 @@ BoundingBox bounding_box(const TriangleMesh& mesh);  // zero box for an empty me
 double signed_volume(const TriangleMesh& mesh);      // divergence theorem; unit of the vertices, cubed
 double surface_area(const TriangleMesh& mesh);
 Eigen::Vector3d volume_centroid(const TriangleMesh& mesh);  // of a closed mesh
+
+// Drops the vertices that no triangle uses, keeping the order of the others; returns how many.
+std::size_t drop_unused_vertices(TriangleMesh& mesh);
 
 }  // namespace skinframe

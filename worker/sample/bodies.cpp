@@ -99,11 +99,11 @@ std::vector<Body> sample_bodies() {
   bodies.push_back({{"stool", "a seat on four thin splayed legs with rungs between them"},
                     stool(),
                     {{-84, -84, -4}, {84, 84, 206}},
-                    1.8});
+                    2.0});
   bodies.push_back({{"relief", "a solid vase covered with a fine raised pattern"},
                     relief(),
                     {{-80, -80, -4}, {80, 80, 206}},
-                    1.8});
+                    2.1});
   bodies.push_back({{"egg", "a plain egg with a flat foot"}, egg(), {{-76, -76, -4}, {76, 76, 206}}, 2.2});
   bodies.push_back({{"bracket", "an angle bracket with a gusset and three bolt holes"},
                     bracket(),

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "worker/mesh/polygon_soup.h"
 #include "worker/solid/half_edges.h"
 
 namespace skinframe {

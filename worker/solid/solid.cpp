@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "worker/mesh/polygon_soup.h"
 #include "worker/solid/half_edges.h"
 #include "worker/solid/weld.h"
 

@@ -8,7 +8,6 @@
 #include <numeric>
 #include <unordered_map>
 
-#include "worker/mesh/polygon_soup.h"
 #include "worker/solid/half_edges.h"
 
 namespace skinframe {

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gmock/gmock.h>
+#include "tests/worker/mesh/mesh_files.h"
+
+namespace skinframe {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using namespace testing;
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(ReadPly, EveryEncodingGivesTheSameTetrahedron) {
+  expect_tetrahedron(read_bytes(ascii_ply()), "PLY");
+  expect_tetrahedron(read_bytes(binary_ply<float>(false)), "PLY");
+  expect_tetrahedron(read_bytes(binary_ply<double>(false)), "PLY");
+  expect_tetrahedron(read_bytes(binary_ply<float>(true)), "PLY");
+  expect_tetrahedron(read_bytes(binary_ply<double>(true)), "PLY");
+}
+
+TEST(ReadPly, CountsBeyondTheFileAreRefusedBeforeMemoryIsTaken) {
+  EXPECT_THAT(error_of(with(ascii_ply(), "vertex 4", "vertex 4000000000")),
+              AllOf(HasSubstr("4000000000"), HasSubstr("\"vertex\"")));
+  EXPECT_THAT(error_of(with(binary_ply<float>(true), "face 4", "face 4000000000")), HasSubstr("4000000000"));
+  EXPECT_THAT(error_of(with(ascii_ply(), "vertex 4", "vertex -4")), HasSubstr("line 4: \"-4\""));
+  EXPECT_THAT(error_of(with(ascii_ply(), "vertex 4", "vertex 99999999999999999999")), HasSubstr("line 4"));
+}
+
+TEST(ReadPly, DefectsAreNamed) {
+  EXPECT_THAT(error_of(with(ascii_ply(), "3 1 2 3\n", "3 1 2 4\n")),
+              HasSubstr("line 18: index 4 of 4 vertices"));
+  EXPECT_THAT(error_of(with(ascii_ply(), "3 1 2 3\n", "3 1 2 -1\n")), HasSubstr("index -1 of 4 vertices"));
+  EXPECT_THAT(error_of(with(ascii_ply(), "3 1 2 3\n", "3 1 2 1.5\n")),
+              HasSubstr("1.5 is not a vertex index"));
+  EXPECT_THAT(error_of(with(ascii_ply(), "3 1 2 3\n", "-3 1 2 3\n")), HasSubstr("-3 is not a length"));
+  EXPECT_THAT(error_of(with(ascii_ply(), "0 0 1\n", "0 0 nan\n")), HasSubstr("vertex 3"));
+  EXPECT_THAT(error_of(with(ascii_ply(), "property float z\n", "")), HasSubstr("no coordinate z"));
+  EXPECT_THAT(error_of(with(ascii_ply(), "vertex_indices", "corners")), HasSubstr("vertex_indices"));
+  EXPECT_THAT(error_of(with(ascii_ply(), "format ascii 1.0\n", "")), HasSubstr("without a format"));
+  EXPECT_THAT(error_of(with(ascii_ply(), "float x", "quaternion x")), HasSubstr("\"quaternion\""));
+  EXPECT_THAT(error_of("ply\nformat ascii 1.0\n"), HasSubstr("end_header"));
+}
+
+TEST(ReadPly, ABinaryNanIsNamedByItsVertex) {
+  std::string bytes = binary_ply<double>(false);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::size_t body = bytes.find("end_header\n") + 11;
+  std::memcpy(bytes.data() + body + 2 * 25 + 9, &nan, 8);
+  EXPECT_THAT(error_of(bytes), HasSubstr("vertex 2: coordinate y is not finite"));
+}
+
+TEST(ReadPly, ElementsWithoutPropertiesCostNothingHoweverMany) {
+  expect_tetrahedron(read_bytes(with(ascii_ply(), "element face", "element ghost 4000000000\nelement face")),
+                     "PLY");
+}
+
+TEST(ReadPly, StripsAreRefusedByName) {
+  EXPECT_THAT(error_of(with(ascii_ply(), "element face 4", "element tristrips 4")), HasSubstr("strips"));
+}
+
+}  // namespace
+}  // namespace skinframe
