@@ -14,6 +14,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kNearBarrier = 1e-2;
+// The moved frame is sized again: the pass itself need not be exact, nor be waited for when it does not converge.
+constexpr double kRoughly = 10;
+constexpr int kPatientIterations = 80;
 // A node this close to the edge of its region, relative to its box, does not move in this pass.
 constexpr double kEdgeShare = 1e-3;
 // The least length is at most this share of the present one, so that the start is inside.
@@ -66,6 +69,8 @@ ProgramRequest geometry_request(const Design& design, NodeRegions regions, const
   ProgramRequest request;
   set_size_bounds(problem, request);
   request.initial_barrier = kNearBarrier;
+  request.tolerance_factor = kRoughly;
+  request.max_iterations = kPatientIterations;
   for (std::size_t j = 0; j < problem.frame.struts.size(); ++j) {
     const Strut& strut = problem.frame.struts[j];
     const double length = problem.frame.length_mm(strut);

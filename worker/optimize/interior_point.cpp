@@ -2,6 +2,7 @@
 #include "worker/optimize/interior_point.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "worker/optimize/barrier_update.h"
 #include "worker/optimize/kkt_system.h"
@@ -13,7 +14,7 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double kSmallestBarrierShare = 1e-2;  // of the tolerance
+constexpr double kSmallestBarrierShare = 1.0 / 11;  // of the tolerance: mu itself is an error at the end
 constexpr double kDualSpread = 1e10;            // duals stay within mu / s divided and multiplied by this
 constexpr double kRestoredSpread = 1e4;
 constexpr int kMostRestorations = 30;
@@ -46,6 +47,7 @@ class InteriorPoint {
       const KktError error = kkt_error(program_, layout_, iterate_, 0);
       if (!options_.each(record(iteration, error))) return result(InteriorPointEnd::kCancelled, iteration);
       if (error.worst() <= options_.tolerance) return result(InteriorPointEnd::kOptimal, iteration);
+      if (best_will_do(iteration, error)) return result(InteriorPointEnd::kAcceptable, iteration);
       if (options_.good_enough(iterate_.point, error)) return result(InteriorPointEnd::kGoodEnough, iteration);
 
       update_barrier();
@@ -60,6 +62,17 @@ class InteriorPoint {
   }
 
  private:
+  bool best_will_do(int iteration, const KktError& error) {
+    if (!best_ || error.worst() < best_error_) {
+      best_ = iterate_;
+      best_error_ = error.worst();
+      best_at_ = iteration;
+    }
+    if (best_error_ > kAcceptableFactor * options_.tolerance || iteration < best_at_ + kPatience) return false;
+    iterate_ = *best_;
+    return true;
+  }
+
   void update_barrier() {
     while (barrier_.solved_well(kkt_error(program_, layout_, iterate_, barrier_.value()).worst())) {
       barrier_.decrease();
@@ -132,6 +145,9 @@ class InteriorPoint {
   InertiaCorrection inertia_;
   Regularisation regularisation_;
   Iterate iterate_;
+  std::optional<Iterate> best_;  // of the least error at mu = 0
+  double best_error_ = 0;
+  int best_at_ = 0;
   int restorations_ = 0;
 };
 

@@ -32,6 +32,7 @@ struct InteriorPointOptions {
 
 enum class InteriorPointEnd {
   kOptimal,         // error <= tolerance
+  kAcceptable,      // error <= kAcceptableFactor * tolerance, and rounding lets it fall no further
   kGoodEnough,      // good_enough said so
   kIterationLimit,
   kStuck,           // neither a step nor a restoration made progress
@@ -40,10 +41,15 @@ enum class InteriorPointEnd {
 
 struct InteriorPointResult {
   InteriorPointEnd end = InteriorPointEnd::kStuck;
-  ProgramVector point;  // the last iterate, whatever the end
+  ProgramVector point;  // the last iterate; the best one when acceptable
   KktError error;
   int iterations = 0;
 };
+
+// Near the solution the reduced system is so stiff that rounding ends the descent, sooner for programs linear in A. When the
+// error has not fallen for kPatience iterations, the best iterate is taken if it is within this factor of the tolerance.
+inline constexpr double kAcceptableFactor = 100;
+inline constexpr int kPatience = 8;
 
 // Bounds with lower < upper must leave room: the start is pushed inside them.
 InteriorPointResult solve_program(const FrameProgram& program, ProgramVector start, const InteriorPointOptions& options);

@@ -103,13 +103,16 @@ class Algorithm {
 
   // TopOpt and GeoOpt in turn until the volume falls by less than outer_decrease.
   void reduce() {
-    if (!options_.topology && !options_.geometry) return;
+    const bool topology = options_.topology || (options_.relaxed && options_.order == OptimizeOptions::Order::kTight);
+    if (!topology && !options_.geometry) return;
     for (int round = 0; round < options_.max_outer_iterations; ++round) {
       const double before = design_.volume_mm3;
-      if (options_.topology)
+      const std::size_t struts = design_.problem.frame.struts.size();
+      if (topology)
         timed("topology", Stage::kTopology, [&] { design_ = optimise_topology(std::move(design_), session_); });
       if (session_.cancelled()) return;
       if (round == 0) result_.topology = record_of(design_.problem, design_.volume_mm3);
+      if (round > 0 && design_.problem.frame.struts.size() == struts) return;  // geometry has already had this frame
       if (options_.geometry)
         timed("geometry", Stage::kGeometry, [&] { design_ = optimise_geometry(std::move(design_), session_); });
       if (session_.cancelled()) return;

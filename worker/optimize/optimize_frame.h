@@ -32,7 +32,8 @@ struct OptimizeOptions {
   Order order = Order::kTight;
 
   // Which stages run. Sizing always runs; the others build upon it.
-  bool topology = true;
+  bool relaxed = true;   // relaxed minimum volume, part of the topology stage; kTight only
+  bool topology = true;  // reweighted removal of struts
   bool geometry = true;
 
   // The regions of the free nodes about the present frame, asked for before each geometry pass. Empty: a box around each

@@ -35,6 +35,8 @@ struct ProgramRequest {
   NodeRegions regions;                             // nodes with a list move; empty: none does
   std::vector<double> min_length_mm;               // one a strut, where nodes move
   double initial_barrier = 0.1;                    // less where the start is near the optimum
+  double tolerance_factor = 1;                     // on OptimizeOptions::kkt_tolerance
+  std::optional<int> max_iterations;               // beneath the options' own
 };
 
 // Lower and upper areas of all struts as area_bounds leaves them.

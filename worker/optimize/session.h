@@ -17,6 +17,8 @@ struct ProgramOutcome {
   NodeVectors positions_mm;
   double elastic = 0;
   double kkt_error = 0;
+
+  bool converged() const { return end == InteriorPointEnd::kOptimal || end == InteriorPointEnd::kAcceptable; }
 };
 
 class Session {

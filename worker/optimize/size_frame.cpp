@@ -19,6 +19,7 @@ constexpr double kElasticError = 1e-4;
 constexpr double kBalanceToleranceMm = 1e-6;
 // A hint is a start when it is at most this far from feasible.
 constexpr double kHintUtilisation = 1.5;
+constexpr double kNearBarrier = 1e-2;
 
 class Sizing {
  public:
@@ -44,7 +45,7 @@ class Sizing {
       }
     }
     if (session_.cancelled()) return cancelled();
-    return minimise_volume(start);
+    return minimise_volume(start, !hint_mm2.empty());
   }
 
  private:
@@ -142,7 +143,7 @@ class Sizing {
     reached.detail = fmt::format(
         "{} cannot be kept: the best reachable is {:.4g} times the limit ({})", reached.violated_constraint,
         utilisation(reached.evaluation),
-        outcome.end == InteriorPointEnd::kOptimal ? "a local optimum of the least violation" : "the search stopped early");
+        outcome.converged() ? "a local optimum of the least violation" : "the search stopped early");
     return reached;
   }
 
@@ -170,11 +171,14 @@ class Sizing {
     return leaning;
   }
 
-  SizedFrame minimise_volume(const std::vector<double>& start) {
-    const ProgramOutcome outcome = over_cases(
-        start, 1.0, [&](const std::vector<int>& cases) { return session_.solve(problem_, request(cases), start); });
+  SizedFrame minimise_volume(const std::vector<double>& start, bool near) {
+    const ProgramOutcome outcome = over_cases(start, 1.0, [&](const std::vector<int>& cases) {
+      ProgramRequest least = request(cases);
+      if (near) least.initial_barrier = kNearBarrier;
+      return session_.solve(problem_, least, start);
+    });
     if (outcome.end == InteriorPointEnd::kCancelled) return cancelled();
-    const bool optimal = outcome.end == InteriorPointEnd::kOptimal;
+    const bool optimal = outcome.converged();
     SizedFrame sized = at(optimal ? Termination::kOptimal : Termination::kIterationLimit, outcome.areas_mm2,
                           optimal ? "a local optimum" : "the interior point stopped before its tolerance");
     sized.kkt_error = outcome.kkt_error;

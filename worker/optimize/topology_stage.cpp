@@ -13,12 +13,15 @@ namespace {
 // A load case takes part when its demand is at least this share of the limit in the sized frame.
 constexpr double kBindingShare = 0.95;
 // Shares of the removed struts that come back, try after try.
-constexpr double kRestored[] = {0.0, 0.1, 0.3};
+constexpr double kRestored[] = {0.0, 0.2};
 // A strut with lower bound zero is removed at this share of the mean area.
 constexpr double kVanishedShare = 1e-4;
 // The printed order caps the volume at SizeOpt's; rounding must not make that infeasible.
 constexpr double kPaperCapRoom = 1e-6;
 constexpr double kNearBarrier = 1e-2;
+// What is thresholded and sized again need not be exact; and a program that does not converge soon is not worth waiting for.
+constexpr double kRoughly = 10;
+constexpr int kPatientIterations = 80;
 
 double mean_area(const Design& design) {
   return std::accumulate(design.areas_mm2.begin(), design.areas_mm2.end(), 0.0) /
@@ -45,6 +48,8 @@ ProgramRequest removal_request(const Design& design) {
   ProgramRequest request;
   set_size_bounds(design.problem, request);
   request.cases = binding_cases(design);
+  request.tolerance_factor = kRoughly;
+  request.max_iterations = kPatientIterations;
   const std::vector<bool> removable = removable_struts(design.problem);
   for (std::size_t j = 0; j < removable.size(); ++j)
     if (removable[j]) request.lower_mm2[j] = 0;
@@ -122,7 +127,7 @@ Design reweight(Design design, double cap_room, Session& session) {
       if (removable[j]) request.area_weights[j] = xi / (xi + areas[j]);
     const ProgramOutcome outcome = session.solve(design.problem, request, areas);
     if (outcome.end == InteriorPointEnd::kCancelled) return design;
-    if (outcome.end != InteriorPointEnd::kOptimal) break;  // the areas of the round before still serve
+    if (!outcome.converged()) break;  // the areas of the round before still serve
     areas = outcome.areas_mm2;
   }
   auto shrunk = threshold_and_size(design, areas, options.topology_removal_share, session);
@@ -133,10 +138,11 @@ Design reweight(Design design, double cap_room, Session& session) {
 
 Design optimise_topology(Design design, Session& session) {
   if (auto bare = bare_design(design, session.options())) return std::move(*bare);
-  if (session.options().order == OptimizeOptions::Order::kPaper) return reweight(std::move(design), kPaperCapRoom, session);
-  design = relax(std::move(design), session);
-  if (session.cancelled()) return design;
-  return reweight(std::move(design), session.options().topology_cap_room, session);
+  const OptimizeOptions& options = session.options();
+  const bool tight = options.order == OptimizeOptions::Order::kTight;
+  if (tight && options.relaxed) design = relax(std::move(design), session);
+  if (!options.topology || session.cancelled()) return design;
+  return reweight(std::move(design), tight ? options.topology_cap_room : kPaperCapRoom, session);
 }
 
 }  // namespace skinframe

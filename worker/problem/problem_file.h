@@ -11,9 +11,11 @@
 //
 // Optional beyond that: "skin_weight_n" (one a node), "skin_mass": {"weight_n","centroid_mm"},
 // "balance_half_planes": [{"normal":[x,y],"offset_mm"}], "skin_triangles": [[i,j,k]...], "order": "paper|tight".
-// Null or absent strengths, slenderness and limit are off. Fields that are not listed are ignored (results ride along).
+// Null or absent strengths, slenderness and limit are off; absent gravity is on, absent stages are all of them, absent
+// skin is false. "size" is always among the stages. Fields that are not listed are ignored (results ride along).
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -29,6 +31,8 @@ inline constexpr std::uintmax_t kMaxProblemFileBytes = std::uintmax_t{256} << 20
 inline constexpr std::size_t kMaxProblemNodes = 1'000'000;
 inline constexpr std::size_t kMaxProblemStruts = 8'000'000;
 inline constexpr std::size_t kMaxProblemLoadCases = 1'000;
+inline constexpr std::size_t kMaxProblemHalfPlanes = 10'000;
+inline constexpr std::size_t kMaxProblemForces = 50'000'000;  // load cases times nodes
 
 struct ProblemFile {
   FrameProblem problem;

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `skinframe solve-frame PROBLEM.json --out RESULT.json`: the optimiser alone, on a given frame.
+#pragma once
+
+#include <filesystem>
+
+#include "worker/run/run_context.h"
+
+namespace skinframe {
+
+// The exit code: 0 solved, 3 bad problem file, 4 infeasible (the result is written all the same), 5 internal or not
+// writable, 6 cancelled. Errors and progress go to stderr; stdout gets a summary, as one line of JSON when json_summary.
+int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out, bool json_summary,
+                     RunContext& context);
+int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out, bool json_summary);
+
+}  // namespace skinframe
