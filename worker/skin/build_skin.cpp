@@ -18,6 +18,7 @@ namespace {
 constexpr double kDefaultVoxelInThicknesses = 0.3;
 constexpr double kCoarseCellsAcross =
     200.0;  // of the largest edge of the box: at most 8 million coarse voxels
+constexpr double kLeastCoarseness = 2.0;     // and at least this many fine voxels, on small bodies
 constexpr double kOuterVoxels = 3.0;
 constexpr double kSpareInnerVoxels = 4.0;
 // The fine grid holds some 24 voxels under and over every voxel's square of surface, 8 bytes each while it is
@@ -57,13 +58,15 @@ Result<Skin> build(const TriangleMesh& mesh, const SkinOptions& options, const R
   const BoundingBox box = bounding_box(mesh);
   const double extent = box.extent().maxCoeff();
   grids->voxel_mm = *voxel;
-  grids->coarse_voxel_mm = std::max(*voxel, extent / kCoarseCellsAcross);
+  grids->coarse_voxel_mm = std::max(kLeastCoarseness * *voxel, extent / kCoarseCellsAcross);
   const double inner_voxels = std::ceil(options.thickness_mm / *voxel) + kSpareInnerVoxels;
   grids->inner_band_mm = inner_voxels * *voxel;
   grids->outer_band_mm = kOuterVoxels * *voxel;
   grids->fine = distance_grid(mesh, *voxel, kOuterVoxels, inner_voxels);
   if (context.cancelled()) return cancelled_error();
-  grids->coarse = distance_grid(mesh, grids->coarse_voxel_mm, kOuterVoxels, kCoarseCellsAcross);
+  // No point is deeper than half of the box's least edge.
+  const double deepest = 0.5 * box.extent().minCoeff() / grids->coarse_voxel_mm + 2.0;
+  grids->coarse = distance_grid(mesh, grids->coarse_voxel_mm, kOuterVoxels, deepest);
   if (context.cancelled()) return cancelled_error();
 
   Skin skin;

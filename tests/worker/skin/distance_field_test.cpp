@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/skin/distance_field.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "tests/worker/skin/bodies.h"
+#include "worker/skin/build_skin.h"
+
+namespace skinframe {
+namespace {
+
+class SphereField : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    RunContext context;
+    auto skin = build_skin(bodies::sphere(20.0), {.thickness_mm = 1.0}, context);
+    ASSERT_TRUE(skin.ok());
+    field_ = new DistanceField(skin->field);
+  }
+  static void TearDownTestSuite() { delete field_; }
+  static Eigen::Vector3d at_radius(double r) {
+    return Eigen::Vector3d(0, 0, 20) + r * Eigen::Vector3d(0.36, 0.48, 0.8);
+  }
+  static DistanceField* field_;
+};
+DistanceField* SphereField::field_ = nullptr;
+
+TEST_F(SphereField, IsTheDistanceFromJustOutsideToTheCentre) {
+  for (double r = 0.5; r < 20.5; r += 0.37) EXPECT_NEAR(field_->at(at_radius(r)), r - 20.0, 0.05) << "radius " << r;
+}
+
+TEST_F(SphereField, SaysTheOuterBandFarAway) {
+  EXPECT_EQ(field_->at(at_radius(25.0)), field_->outer_band_mm());
+  EXPECT_EQ(field_->at({1e12, 0, 0}), field_->outer_band_mm());
+  EXPECT_EQ(field_->at({std::numeric_limits<double>::quiet_NaN(), 0, 0}), field_->outer_band_mm());
+}
+
+TEST_F(SphereField, GradientPointsOutward) {
+  for (double r : {3.0, 10.0, 18.0, 19.0, 20.0}) {
+    EXPECT_NEAR(field_->gradient(at_radius(r)).dot(Eigen::Vector3d(0.36, 0.48, 0.8)), 1.0, 0.05) << "radius " << r;
+  }
+}
+
+TEST(DistanceField, MadeOfNothingIsZeroEverywhere) {
+  const DistanceField field;
+  EXPECT_EQ(field.at({1, 2, 3}), 0.0);
+  EXPECT_EQ(field.gradient({1, 2, 3}), Eigen::Vector3d(Eigen::Vector3d::Zero()));
+}
+
+}  // namespace
+}  // namespace skinframe
