@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/call/retry.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <string>
+
+namespace skinframe::client {
+namespace {
+
+constexpr std::chrono::milliseconds kLongestAskedDelay{30'000};
+
+// Trailing metadata "retry-after-ms" of a full queue.
+std::optional<std::chrono::milliseconds> asked_delay(const grpc::ClientContext& context) {
+  const auto& metadata = context.GetServerTrailingMetadata();
+  const auto it = metadata.find("retry-after-ms");
+  if (it == metadata.end()) return std::nullopt;
+  std::int64_t value = 0;
+  const auto [end, error] = std::from_chars(it->second.data(), it->second.data() + it->second.size(), value);
+  if (error != std::errc() || value < 0) return std::nullopt;
+  return std::min(std::chrono::milliseconds(std::min<std::int64_t>(value, 1'000'000)), kLongestAskedDelay);
+}
+
+bool may_help(const grpc::Status& status, const RetryPolicy& policy) {
+  return status.error_code() == grpc::StatusCode::UNAVAILABLE ||
+         (policy.queue_full && status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED);
+}
+
+grpc::Status interrupted() { return {grpc::StatusCode::CANCELLED, "interrupted"}; }
+
+}  // namespace
+
+Backoff::Backoff(std::chrono::milliseconds first, std::chrono::milliseconds longest, std::uint64_t seed)
+    : first_(first), longest_(longest), current_(first), random_(seed) {}
+
+std::chrono::milliseconds Backoff::next() {
+  std::uniform_real_distribution<double> part(0.5, 1.0);
+  const auto delay = std::chrono::milliseconds(
+      static_cast<std::int64_t>(static_cast<double>(current_.count()) * part(random_)));
+  current_ = std::min(current_ * 2, longest_);
+  return delay;
+}
+
+grpc::Status call_once(const Connection& connection, std::chrono::milliseconds deadline,
+                       const Attempt& attempt) {
+  grpc::ClientContext context;
+  context.set_deadline(std::chrono::system_clock::now() + deadline);
+  const std::stop_callback cancel(connection.stop, [&] { context.TryCancel(); });
+  return attempt(context);
+}
+
+grpc::Status call_with_retries(const Connection& connection, const RetryPolicy& policy,
+                               const Attempt& attempt) {
+  Backoff backoff(policy.first, policy.longest);
+  for (int left = policy.attempts; !connection.stop.stop_requested();) {
+    std::optional<std::chrono::milliseconds> asked;
+    const grpc::Status status = call_once(connection, policy.deadline, [&](grpc::ClientContext& context) {
+      grpc::Status answer = attempt(context);
+      if (answer.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED) asked = asked_delay(context);
+      return answer;
+    });
+    if (--left <= 0 || !may_help(status, policy)) return status;
+    const auto delay = backoff.next();
+    if (!connection.clock->wait(std::max(delay, asked.value_or(delay)), connection.stop)) break;
+  }
+  return interrupted();
+}
+
+Failure to_failure(const grpc::Status& status, const Connection& connection) {
+  const std::string& message = status.error_message();
+  if (connection.stop.stop_requested()) return {FailureKind::kInterrupted, "interrupted"};
+  switch (status.error_code()) {
+    case grpc::StatusCode::INVALID_ARGUMENT:
+    case grpc::StatusCode::ALREADY_EXISTS:
+    case grpc::StatusCode::FAILED_PRECONDITION:
+    case grpc::StatusCode::OUT_OF_RANGE:
+      return {FailureKind::kUsage, message};
+    case grpc::StatusCode::UNIMPLEMENTED:
+      return {FailureKind::kUsage, message.empty() ? "the server does not build this" : message};
+    case grpc::StatusCode::NOT_FOUND:
+      return {FailureKind::kNotFound, message};
+    case grpc::StatusCode::UNAVAILABLE:
+      return {
+          FailureKind::kUnreachable,
+          fmt::format("no server answers at {} ({}); start one with `skinframe-server --data DIR`, or name "
+                      "another with --server HOST:PORT or SKINFRAME_SERVER",
+                      connection.address, message)};
+    case grpc::StatusCode::DEADLINE_EXCEEDED:
+      return {FailureKind::kUnreachable,
+              fmt::format("the server at {} does not answer in time; try again later", connection.address)};
+    case grpc::StatusCode::RESOURCE_EXHAUSTED:
+      return {FailureKind::kUnreachable, fmt::format("the server at {} has no room now: {}; try again later",
+                                                     connection.address, message)};
+    case grpc::StatusCode::UNAUTHENTICATED:
+    case grpc::StatusCode::PERMISSION_DENIED:
+      return {FailureKind::kUsage, fmt::format("the server at {} refuses: {}", connection.address, message)};
+    default:
+      break;
+  }
+  return {FailureKind::kInternal, fmt::format("the server at {}: {}", connection.address, message)};
+}
+
+}  // namespace skinframe::client

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+// Try again where the API says that it may help, for as long as the caller has patience.
+#pragma once
+
+#include <grpcpp/client_context.h>
+#include <grpcpp/support/status.h>
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <random>
+
+#include "client/call/connect.h"
+
+namespace skinframe::client {
+
+// The k-th delay lies between half of min(first * 2^k, longest) and all of it: clients that lost their server
+// at one moment do not come back at one moment.
+class Backoff {
+ public:
+  Backoff(std::chrono::milliseconds first, std::chrono::milliseconds longest,
+          std::uint64_t seed = std::random_device{}());
+  std::chrono::milliseconds next();
+  void reset() { current_ = first_; }
+
+ private:
+  std::chrono::milliseconds first_, longest_, current_;
+  std::mt19937_64 random_;
+};
+
+struct RetryPolicy {
+  int attempts = 4;                            // in all, >= 1
+  std::chrono::milliseconds first{100};        // delay after the first
+  std::chrono::milliseconds longest{2000};     // delay at most
+  std::chrono::milliseconds deadline{30'000};  // of one attempt
+  bool queue_full = false;                     // RESOURCE_EXHAUSTED too, after the delay the server names
+};
+
+using Attempt = std::function<grpc::Status(grpc::ClientContext&)>;
+
+// Runs attempts until one gives something that trying again cannot mend. CANCELLED when stopped.
+grpc::Status call_with_retries(const Connection& connection, const RetryPolicy& policy,
+                               const Attempt& attempt);
+
+// One attempt under the connection's stop token.
+grpc::Status call_once(const Connection& connection, std::chrono::milliseconds deadline,
+                       const Attempt& attempt);
+
+// A status that is not OK, as a sentence for people.
+Failure to_failure(const grpc::Status& status, const Connection& connection);
+
+}  // namespace skinframe::client

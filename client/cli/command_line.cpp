@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/command_line.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <functional>
+#include <iterator>
+#include <string_view>
+
+#include "client/cli/follow.h"
+#include "client/cli/sibling.h"
+#include "client/cli/verbs.h"
+
+namespace skinframe::client {
+namespace {
+
+constexpr std::array<std::string_view, 3> kLocalVerbs = {"sample", "check", "solve-frame"};
+constexpr std::array<std::string_view, 3> kUnbuiltVerbs = {"calibrate", "render", "doctor"};
+
+template <class List>
+bool contains(const List& list, std::string_view word) {
+  return std::find(list.begin(), list.end(), word) != list.end();
+}
+
+// Index of the first word that is neither a global option nor the value of one.
+std::optional<std::size_t> verb_index(const std::vector<std::string>& words) {
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    if (words[i] == "--server" || words[i] == "--tls-ca") {
+      ++i;
+    } else if (words[i].empty() || words[i][0] != '-') {
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
+constexpr char kExamples[] =
+    "Examples:\n"
+    "  skinframe run fish.obj --printer sinterstation-hiq --size 200 --out fish\n"
+    "  skinframe submit fish.obj --printer sinterstation-hiq --server farm:7350 --watch --out fish\n"
+    "  skinframe sample --list\n"
+    "  skinframe check fish\n"
+    "\n"
+    "Exit codes: 0 done, 2 wrong usage, 3 mesh unusable, 4 infeasible, 5 failed, 6 cancelled, 7 server "
+    "unreachable,\n"
+    "8 only some printers, 9 unknown job. SKINFRAME_SERVER names the server, SKINFRAME_WORKER the worker "
+    "program.";
+
+class CommandLine {
+ public:
+  CommandLine() {
+    app_.name("skinframe");
+    app_.set_version_flag("--version", "skinframe " SKINFRAME_VERSION);
+    app_.footer(kExamples);
+    app_.require_subcommand(0, 1);
+    app_.add_option("--server", global_.server.address, "Server, HOST:PORT")
+        ->envname("SKINFRAME_SERVER")
+        ->capture_default_str();
+    app_.add_option("--tls-ca", global_.server.tls_ca, "PEM file of the certificate authority; turns TLS on");
+    app_.add_flag("--json", global_.json, "Data as JSON on stdout");
+    add_run();
+    add_submit();
+    add_watch();
+    add_job_verb("get", "Show one job", "  skinframe get JOB --json", get);
+    add_list();
+    add_job_verb("cancel", "Ask for a job's end", "  skinframe cancel JOB", cancel);
+    add_download();
+    add_job_verb("delete", "Forget a job that has ended", "  skinframe delete JOB", remove);
+    verb("printers", "The printers that the server knows", "  skinframe printers",
+         [this] { return printers(global_); });
+    verb("materials", "The materials that the server knows", "  skinframe materials --json",
+         [this] { return materials(global_); });
+    add_local("sample", "Write a body that ships with the program (runs here)",
+              "  skinframe sample --list\n  skinframe sample hanging-ball --out ball.stl");
+    add_local("check", "Re-check every claim of a result from its files alone (runs here)",
+              "  skinframe check fish");
+    add_local("solve-frame", "The optimiser alone, on a frame problem file (runs here)",
+              "  skinframe solve-frame problem.json --out result.json");
+  }
+
+  int run_words(int argc, char** argv) {
+    if (argc < 2) {
+      fmt::print(stderr, "{}", app_.help());
+      return kExitUsage;
+    }
+    try {
+      app_.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app_.exit(error) == 0 ? kExitSuccess : kExitUsage;  // whatever CLI11 numbers it
+    }
+    if (!action_) {
+      fmt::print(stderr, "skinframe: no verb is given; `skinframe --help` lists them\n");
+      return kExitUsage;
+    }
+    return action_();
+  }
+
+ private:
+  using Action = std::function<ExitCode()>;
+
+  CLI::App& verb(const char* name, const char* description, const std::string& examples, Action action) {
+    CLI::App& sub = *app_.add_subcommand(name, description);
+    sub.fallthrough();  // the global options, after the verb as well
+    sub.footer("Examples:\n" + examples);
+    sub.callback([this, action = std::move(action)] { action_ = action; });
+    return sub;
+  }
+
+  void add_job_verb(const char* name, const char* description, const std::string& examples,
+                    ExitCode (*action)(const GlobalArguments&, const std::string&)) {
+    verb(name, description, examples, [this, action] { return action(global_, job_id_); })
+        .add_option("JOB", job_id_, "Job id")
+        ->required();
+  }
+
+  void add_run() {
+    CLI::App& sub =
+        verb("run", "One command: starts a server and a worker here, runs the job, stops them",
+             "  skinframe run fish.obj --printer sinterstation-hiq --size 200 --out fish\n"
+             "  skinframe run fish.obj --printer sinterstation-hiq --printer makerbot-replicator-2 \\\n"
+             "      --size 140 --load side:top:20,0,0 --out fish",
+             [this] { return run(global_, run_); });
+    add_job_options(sub, run_.job);
+    sub.add_option("--out", run_.out, "Folder for the results")->required();
+    sub.add_option("--data", run_.data,
+                   "Folder of the embedded server, kept afterwards (default: temporary)");
+  }
+
+  void add_submit() {
+    CLI::App& sub =
+        verb("submit", "Upload a mesh and submit a job; prints the job's id",
+             "  skinframe submit fish.obj --printer sinterstation-hiq --size 200\n"
+             "  skinframe submit fish.obj --printer sinterstation-hiq --watch --out fish\n"
+             "  skinframe submit fish.obj --printer sinterstation-hiq --load pinch:0,-30,80:0,10,0 \\\n"
+             "      --load pinch:0,30,80:0,-10,0 --label order=4711 --deadline 15m",
+             [this] {
+               if (!submit_.out.empty() && !submit_.watch) {
+                 return tell({FailureKind::kUsage,
+                              "--out needs --watch; or fetch the files later with `skinframe download`"});
+               }
+               return submit(global_, submit_);
+             });
+    add_job_options(sub, submit_.job);
+    sub.add_option("--request-id", submit_.job.request_id,
+                   "Your own id of this submission: sent twice it makes one job (default: random)");
+    sub.add_flag("--validate-only", submit_.job.validate_only,
+                 "Check everything that can be checked; make no job");
+    sub.add_flag("--watch", submit_.watch, "Stay until the end; Ctrl-C cancels the job");
+    sub.add_option("--out", submit_.out, "With --watch: folder for the results");
+  }
+
+  void add_watch() {
+    CLI::App& sub = verb("watch", "A job's events, one a line, until its end; Ctrl-C only detaches",
+                         "  skinframe watch JOB\n  skinframe watch JOB --from 17 --json",
+                         [this] { return watch(global_, job_id_, from_); });
+    sub.add_option("JOB", job_id_, "Job id")->required();
+    sub.add_option("--from", from_, "Only events after this sequence number (0: all)")
+        ->check(CLI::NonNegativeNumber);
+  }
+
+  void add_list() {
+    CLI::App& sub =
+        verb("list", "Jobs, newest first",
+             "  skinframe list --state running --state queued\n  skinframe list --label order=4711 --json",
+             [this] { return list(global_, list_); });
+    sub.add_option("--state", list_.states, "queued, running, succeeded, failed or cancelled; repeatable")
+        ->allow_extra_args(false);
+    sub.add_option("--label", list_.labels, "KEY=VALUE; repeatable, all must match")->allow_extra_args(false);
+    sub.add_option("--limit", list_.limit, "At most so many")
+        ->check(CLI::Range(1, 1'000'000))
+        ->capture_default_str();
+  }
+
+  void add_download() {
+    CLI::App& sub =
+        verb("download", "Fetch a job's files; each is checked against its hash",
+             "  skinframe download JOB --out fish", [this] { return download(global_, job_id_, out_); });
+    sub.add_option("JOB", job_id_, "Job id")->required();
+    sub.add_option("--out", out_, "Folder for the files")->required();
+  }
+
+  // Only for the help: called, these verbs never come here (see local_verb).
+  void add_local(const char* name, const char* description, const std::string& examples) {
+    CLI::App& sub = verb(name, description, examples, [] { return kExitUsage; });
+    sub.allow_extras();
+  }
+
+  CLI::App app_{"Skin-frame structures: prints a thin skin on an optimised frame instead of a solid."};
+  GlobalArguments global_;
+  RunArguments run_;
+  SubmitArguments submit_;
+  ListArguments list_;
+  std::string job_id_;
+  std::filesystem::path out_;
+  std::int64_t from_ = 0;
+  Action action_;
+};
+
+}  // namespace
+
+std::optional<LocalVerb> local_verb(const std::vector<std::string>& words) {
+  const auto index = verb_index(words);
+  if (!index || !contains(kLocalVerbs, words[*index])) return std::nullopt;
+  LocalVerb out;
+  out.words.assign(words.begin() + static_cast<std::ptrdiff_t>(*index), words.end());
+  if (contains(out.words, "--help") || contains(out.words, "-h")) return std::nullopt;
+  const bool json_before = std::find(words.begin(), words.begin() + static_cast<std::ptrdiff_t>(*index),
+                                     "--json") != words.begin() + static_cast<std::ptrdiff_t>(*index);
+  if (json_before) out.words.push_back("--json");
+  return out;
+}
+
+std::optional<std::string> unbuilt_verb(const std::vector<std::string>& words) {
+  const auto index = verb_index(words);
+  if (!index || !contains(kUnbuiltVerbs, words[*index])) return std::nullopt;
+  return words[*index];
+}
+
+int skinframe_main(int argc, char** argv) {
+  const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (const auto verb = unbuilt_verb(words)) {
+    return tell({FailureKind::kUsage, fmt::format("`{}` is not built yet", *verb)});
+  }
+  if (const auto verb = local_verb(words)) return tell(become_worker(verb->words));
+  return CommandLine().run_words(argc, argv);
+}
+
+}  // namespace skinframe::client

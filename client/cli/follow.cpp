@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/follow.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "client/jobs/client.h"
+#include "client/jobs/watch.h"
+#include "client/present/job_table.h"
+#include "client/present/json.h"
+#include "client/present/progress_display.h"
+#include "client/transfer/download.h"
+
+namespace skinframe::client {
+namespace {
+
+// What a signal means while a job is followed.
+class CancelOnSignal {
+ public:
+  CancelOnSignal(const Connection& connection, Interrupts& interrupts, ProgressDisplay& display,
+                 std::string job_id)
+      : connection_(connection.with_stop({})),
+        interrupts_(interrupts),
+        display_(display),
+        job_id_(std::move(job_id)) {}
+
+  void operator()(int signal) {
+    if (asked_) {
+      std::stop_source(interrupts_.stop_source()).request_stop();
+      return;
+    }
+    if (signal == SIGINT && ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1) {
+      display_.pause(true);
+      const Answer answer = interrupts_.ask("\nCancel the job? [y/N] ");
+      display_.pause(false);
+      if (answer == Answer::kNo) return;
+    }
+    asked_ = true;
+    display_.say("cancelling the job");
+    const auto cancelled = cancel_job(connection_, job_id_);
+    if (cancelled) return;  // the watch sees the end
+    display_.say("skinframe: " + cancelled.failure().message);
+    std::stop_source(interrupts_.stop_source()).request_stop();
+  }
+
+ private:
+  Connection connection_;
+  Interrupts& interrupts_;
+  ProgressDisplay& display_;
+  std::string job_id_;
+  bool asked_ = false;
+};
+
+Done watch_with_display(const Connection& connection, Interrupts& interrupts, const std::string& job_id) {
+  ProgressDisplay display(stderr, ::isatty(STDERR_FILENO) == 1, *connection.clock);
+  const Interrupts::Handling handling(interrupts, CancelOnSignal(connection, interrupts, display, job_id));
+  WatchOptions options;
+  options.on_lost = [&] { display.say("the server does not answer; watching again as soon as it does"); };
+  return watch_job(connection, job_id, options, [&](const v1::JobEvent& event) {
+    display.show(event);
+    return true;
+  });
+}
+
+void report(const v1::Job& job, bool json) {
+  if (json) {
+    fmt::print("{}\n", to_text(to_json(job)));
+  } else {
+    fmt::print("{}", result_table(job));
+  }
+  std::fflush(stdout);
+  if (job.state() != v1::JOB_STATE_SUCCEEDED || job.reason() != v1::REASON_UNSPECIFIED) {
+    fmt::print(stderr, "skinframe: {}", end_report(job));
+  }
+}
+
+}  // namespace
+
+ExitCode tell(const Failure& failure) {
+  fmt::print(stderr, "skinframe: {}\n", failure.message);
+  return exit_code(failure.kind);
+}
+
+ExitCode follow_job(const Connection& connection, Interrupts& interrupts, const std::string& job_id,
+                    const FollowOptions& options) {
+  if (const auto watched = watch_with_display(connection, interrupts, job_id); !watched)
+    return tell(watched.failure());
+  const auto job = get_job(connection, job_id);
+  if (!job) return tell(job.failure());
+  ExitCode code = exit_code(job->state(), job->reason());
+  std::size_t files = 0;
+  if (!options.out.empty() && job->files_size() > 0) {
+    const auto written = download_results(connection, *job, options.out);
+    if (written) {
+      files = written->size();
+    } else {
+      const ExitCode failed = tell(written.failure());
+      if (code == kExitSuccess || code == kExitPartial) code = failed;
+    }
+  }
+  report(*job, options.json);
+  if (files > 0) fmt::print(stderr, "{} files in {}\n", files, options.out.string());
+  return code;
+}
+
+}  // namespace skinframe::client

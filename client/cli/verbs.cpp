@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/cli/verbs.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+
+#include "client/cli/embedded_farm.h"
+#include "client/cli/follow.h"
+#include "client/cli/interrupts.h"
+#include "client/cli/load_option.h"
+#include "client/jobs/client.h"
+#include "client/jobs/watch.h"
+#include "client/present/event_line.h"
+#include "client/present/job_table.h"
+#include "client/present/json.h"
+#include "client/present/progress_display.h"
+#include "client/present/words.h"
+#include "client/transfer/download.h"
+#include "client/transfer/upload.h"
+
+namespace skinframe::client {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void print_json(const Json& json) { fmt::print("{}\n", to_text(json)); }
+
+// Upload and submission: all that happens before there is a job.
+Result<v1::SubmitJobResponse> upload_and_submit(const Connection& connection, const JobArguments& job,
+                                                v1::SubmitJobRequest request) {
+  const auto mesh = upload_mesh(connection, job.mesh);
+  if (!mesh) return mesh.failure();
+  request.mutable_spec()->set_mesh_sha256(mesh->sha256);
+  return submit_job(connection, std::move(request));
+}
+
+ExitCode report_checks(const v1::SubmitJobResponse& response, bool json) {
+  if (json) {
+    print_json({{"valid", true}, {"checks", to_json(response)["checks"]}});
+  } else {
+    for (const std::string& check : response.checks()) fmt::print("{}\n", one_line(check));
+  }
+  return kExitSuccess;
+}
+
+// The part of `run` between the start of the farm and its end.
+ExitCode run_on(EmbeddedFarm& farm, Interrupts& interrupts, const GlobalArguments& global,
+                const RunArguments& arguments, const v1::SubmitJobRequest& request) {
+  const auto address = farm.address();
+  if (!address) return tell(address.failure());
+  ConnectOptions options;
+  options.address = *address;
+  auto connection = connect(options);
+  if (!connection) return tell(connection.failure());
+  connection->stop = interrupts.stop_source().get_token();
+  const auto submitted = upload_and_submit(*connection, arguments.job, request);
+  if (!submitted) return tell(submitted.failure());
+  return follow_job(*connection, interrupts, submitted->job().job_id(), {arguments.out, global.json});
+}
+
+// One event of `watch` on stdout, the same wherever it is printed.
+void print_event(const v1::JobEvent& event, bool json) {
+  if (json) {
+    fmt::print("{}\n", to_text(to_json(event), -1));
+  } else {
+    fmt::print("{}\n", event_line(event));
+  }
+  std::fflush(stdout);
+}
+
+// On a terminal progress is a bar; only what a person would want to scroll back to stays as a line.
+class TerminalWatch {
+ public:
+  explicit TerminalWatch(ProgressDisplay& display) : display_(display) {}
+  void show(const v1::JobEvent& event) {
+    const std::string stage = event.progress().printer_id() + "/" + event.progress().stage();
+    if (!event.has_progress() || stage != stage_) {
+      display_.finish();
+      print_event(event, false);
+    }
+    if (event.has_progress()) {
+      stage_ = stage;
+      display_.show(event);
+    }
+  }
+
+ private:
+  ProgressDisplay& display_;
+  std::string stage_;
+};
+
+Result<Connection> open(const GlobalArguments& global, const Interrupts& interrupts) {
+  auto connection = connect(global.server);
+  if (connection) connection->stop = interrupts.stop_source().get_token();
+  return connection;
+}
+
+}  // namespace
+
+ExitCode run(const GlobalArguments& global, const RunArguments& arguments) {
+  const auto request = to_request(arguments.job);
+  if (!request) return tell(request.failure());
+  if (const auto mesh = digest_mesh_file(arguments.job.mesh); !mesh) return tell(mesh.failure());
+  Interrupts interrupts;
+  EmbeddedFarm farm(arguments.data, interrupts.stop_source());
+  ExitCode code = run_on(farm, interrupts, global, arguments, *request);
+  if (const auto failure = farm.failure()) code = tell(*failure);
+  if (code == kExitFailed || code == kExitUnreachable) {
+    fmt::print(stderr, "The logs of server and worker are in {}\n", farm.keep_logs().string());
+  }
+  return code;
+}
+
+ExitCode submit(const GlobalArguments& global, const SubmitArguments& arguments) {
+  const auto request = to_request(arguments.job);
+  if (!request) return tell(request.failure());
+  Interrupts interrupts;
+  const auto connection = open(global, interrupts);
+  if (!connection) return tell(connection.failure());
+  const auto submitted = upload_and_submit(*connection, arguments.job, *request);
+  if (!submitted) return tell(submitted.failure());
+  if (request->validate_only()) return report_checks(*submitted, global.json);
+  const std::string& id = submitted->job().job_id();
+  if (arguments.watch) {
+    fmt::print(stderr, "job {}\n", one_line(id));
+    return follow_job(*connection, interrupts, id, {arguments.out, global.json});
+  }
+  if (global.json) {
+    print_json({{"job_id", id}});
+  } else {
+    fmt::print("{}\n", one_line(id));
+    if (submitted->has_queued_before() && submitted->queued_before() > 0) {
+      fmt::print(stderr, "{} jobs stand before it\n", submitted->queued_before());
+    }
+  }
+  return kExitSuccess;
+}
+
+ExitCode watch(const GlobalArguments& global, const std::string& job_id, std::int64_t after_sequence) {
+  Interrupts interrupts;
+  const auto connection = open(global, interrupts);
+  if (!connection) return tell(connection.failure());
+  // Asked first: whether the job and the server exist is known at once, and only then is patience in place.
+  if (const auto known = get_job(*connection, job_id); !known) return tell(known.failure());
+  const bool as_lines = global.json || ::isatty(STDOUT_FILENO) != 1;
+  ProgressDisplay display(stderr, ::isatty(STDERR_FILENO) == 1, *connection->clock);
+  TerminalWatch terminal(display);
+  WatchOptions options;
+  options.after_sequence = after_sequence;
+  options.on_lost = [&] { display.say("the server does not answer; watching again as soon as it does"); };
+  const auto watched = watch_job(*connection, job_id, options, [&](const v1::JobEvent& event) {
+    if (as_lines) {
+      print_event(event, global.json);
+    } else {
+      terminal.show(event);
+    }
+    return std::ferror(stdout) == 0;
+  });
+  display.finish();
+  if (!watched && watched.failure().kind == FailureKind::kInterrupted) {
+    fmt::print(stderr, "detached; the job goes on (skinframe watch {})\n", one_line(job_id));
+    return kExitSuccess;
+  }
+  if (!watched) return tell(watched.failure());
+  const auto job = get_job(*connection, job_id);
+  if (!job) return tell(job.failure());
+  if (job->state() != v1::JOB_STATE_SUCCEEDED || job->reason() != v1::REASON_UNSPECIFIED) {
+    fmt::print(stderr, "skinframe: {}", end_report(*job));
+  }
+  return exit_code(job->state(), job->reason());
+}
+
+ExitCode get(const GlobalArguments& global, const std::string& job_id) {
+  const auto connection = connect(global.server);
+  if (!connection) return tell(connection.failure());
+  const auto job = get_job(*connection, job_id);
+  if (!job) return tell(job.failure());
+  if (global.json) {
+    print_json(to_json(*job));
+  } else {
+    fmt::print("{}", job_description(*job));
+  }
+  return kExitSuccess;
+}
+
+ExitCode list(const GlobalArguments& global, const ListArguments& arguments) {
+  ListFilter filter;
+  filter.limit = arguments.limit;
+  for (const std::string& word : arguments.states) {
+    const auto state = state_from_word(word);
+    if (!state) {
+      return tell(
+          {FailureKind::kUsage,
+           fmt::format("--state {}: is none of queued, running, succeeded, failed, cancelled", word)});
+    }
+    filter.states.push_back(*state);
+  }
+  for (const std::string& text : arguments.labels) {
+    const auto label = parse_label(text);
+    if (!label) return tell(label.failure());
+    filter.labels[label->first] = label->second;
+  }
+  const auto connection = connect(global.server);
+  if (!connection) return tell(connection.failure());
+  const auto jobs = list_jobs(*connection, filter);
+  if (!jobs) return tell(jobs.failure());
+  if (global.json) {
+    Json all = Json::array();
+    for (const v1::Job& job : *jobs) all.push_back(to_json(job));
+    print_json({{"jobs", std::move(all)}});
+  } else {
+    fmt::print("{}", job_list(*jobs));
+  }
+  return kExitSuccess;
+}
+
+ExitCode cancel(const GlobalArguments& global, const std::string& job_id) {
+  const auto connection = connect(global.server);
+  if (!connection) return tell(connection.failure());
+  const auto job = cancel_job(*connection, job_id);
+  if (!job) return tell(job.failure());
+  if (global.json) {
+    print_json(to_json(*job));
+  } else if (is_final(job->state())) {
+    fmt::print("{} {}\n", one_line(job_id), state_word(job->state()));
+  } else {
+    fmt::print("{} {}, its worker is asked to stop\n", one_line(job_id), state_word(job->state()));
+  }
+  return kExitSuccess;
+}
+
+ExitCode remove(const GlobalArguments& global, const std::string& job_id) {
+  const auto connection = connect(global.server);
+  if (!connection) return tell(connection.failure());
+  const auto deleted = delete_job(*connection, job_id);
+  if (!deleted) return tell(deleted.failure());
+  if (global.json) {
+    print_json({{"job_id", job_id}, {"deleted", true}});
+  } else {
+    fmt::print("{} deleted\n", one_line(job_id));
+  }
+  return kExitSuccess;
+}
+
+ExitCode download(const GlobalArguments& global, const std::string& job_id,
+                  const std::filesystem::path& out) {
+  Interrupts interrupts;
+  const auto connection = open(global, interrupts);
+  if (!connection) return tell(connection.failure());
+  const auto job = get_job(*connection, job_id);
+  if (!job) return tell(job.failure());
+  if (!is_final(job->state())) {
+    return tell({FailureKind::kUsage,
+                 fmt::format("job {} is {}; its files are there when it has ended (skinframe watch "
+                             "{})",
+                             one_line(job_id), state_word(job->state()), one_line(job_id))});
+  }
+  if (job->files_size() == 0) {
+    fmt::print(stderr, "skinframe: job {} left no files: {}", one_line(job_id), end_report(*job));
+    return exit_code(job->state(), job->reason());
+  }
+  const auto files = download_results(*connection, *job, out);
+  if (!files) return tell(files.failure());
+  Json paths = Json::array();
+  for (const auto& path : *files) {
+    paths.push_back(path.string());
+    if (!global.json) fmt::print("{}\n", path.string());
+  }
+  if (global.json) print_json({{"job_id", job_id}, {"files", std::move(paths)}});
+  return kExitSuccess;
+}
+
+ExitCode printers(const GlobalArguments& global) {
+  const auto connection = connect(global.server);
+  if (!connection) return tell(connection.failure());
+  const auto all = list_printers(*connection);
+  if (!all) return tell(all.failure());
+  if (global.json) {
+    print_json(to_json(*all));
+  } else {
+    fmt::print("{}", printer_list(*all));
+  }
+  return kExitSuccess;
+}
+
+ExitCode materials(const GlobalArguments& global) {
+  const auto connection = connect(global.server);
+  if (!connection) return tell(connection.failure());
+  const auto all = list_materials(*connection);
+  if (!all) return tell(all.failure());
+  if (global.json) {
+    print_json(to_json(*all));
+  } else {
+    fmt::print("{}", material_list(*all));
+  }
+  return kExitSuccess;
+}
+
+}  // namespace skinframe::client

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each verb does. Data on stdout, everything else on stderr; the result is the exit code.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "client/call/connect.h"
+#include "client/cli/exit_code.h"
+#include "client/cli/job_arguments.h"
+
+namespace skinframe::client {
+
+struct GlobalArguments {
+  ConnectOptions server;
+  bool json = false;
+};
+
+struct RunArguments {
+  JobArguments job;
+  std::filesystem::path out;
+  std::filesystem::path data;  // empty: temporary
+};
+
+struct SubmitArguments {
+  JobArguments job;
+  bool watch = false;
+  std::filesystem::path out;
+};
+
+struct ListArguments {
+  std::vector<std::string> states, labels;
+  int limit = 50;
+};
+
+ExitCode run(const GlobalArguments& global, const RunArguments& arguments);
+ExitCode submit(const GlobalArguments& global, const SubmitArguments& arguments);
+ExitCode watch(const GlobalArguments& global, const std::string& job_id, std::int64_t after_sequence);
+ExitCode get(const GlobalArguments& global, const std::string& job_id);
+ExitCode list(const GlobalArguments& global, const ListArguments& arguments);
+ExitCode cancel(const GlobalArguments& global, const std::string& job_id);
+ExitCode remove(const GlobalArguments& global, const std::string& job_id);
+ExitCode download(const GlobalArguments& global, const std::string& job_id, const std::filesystem::path& out);
+ExitCode printers(const GlobalArguments& global);
+ExitCode materials(const GlobalArguments& global);
+
+}  // namespace skinframe::client

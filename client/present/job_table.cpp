@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "client/present/job_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "client/present/event_line.h"
+#include "client/present/words.h"
+
+namespace skinframe::client {
+namespace {
+
+using Row = std::vector<std::string>;
+
+// Columns as wide as their widest cell; the first two to the left, figures to the right.
+std::string table(const std::vector<Row>& rows, std::size_t left_columns) {
+  std::vector<std::size_t> widths;
+  for (const Row& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string out;
+  for (const Row& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (i > 0) line += "  ";
+      line += i < left_columns ? fmt::format("{:<{}}", row[i], widths[i])
+                               : fmt::format("{:>{}}", row[i], widths[i]);
+    }
+    line.erase(line.find_last_not_of(' ') + 1);
+    out += line + "\n";
+  }
+  return out;
+}
+
+std::string or_dash(bool present, double value, const char* format) {
+  return present ? fmt::format(fmt::runtime(format), value) : "-";
+}
+
+std::string printer_names(const v1::Job& job) {
+  std::string out;
+  for (const auto& printer : job.spec().printers()) {
+    if (!out.empty()) out += ',';
+    out += one_line(printer.printer_id());
+  }
+  return out;
+}
+
+std::string state_and_reason(const v1::Job& job) {
+  std::string out = state_word(job.state());
+  if (job.reason() != v1::REASON_UNSPECIFIED && reason_word(job.reason()) != out)
+    out += ", " + reason_word(job.reason());
+  return out;
+}
+
+}  // namespace
+
+std::string result_table(const v1::Job& job) {
+  std::vector<Row> rows = {{"printer", "material", "nodes/struts", "skin mm3", "frame mm3", "total mm3",
+                            "solid mm3", "ratio", "printed mm3", "weight", "displacement*"}};
+  for (const v1::PrinterResult& printer : job.printers()) {
+    if (!printer.has_statistics()) continue;
+    const v1::PrinterStatistics& s = printer.statistics();
+    rows.push_back({one_line(printer.printer_id()), one_line(printer.material_id()),
+                    fmt::format("{}/{}", s.nodes(), s.struts()), fmt::format("{:.0f}", s.skin_volume_mm3()),
+                    fmt::format("{:.0f}", s.frame_volume_mm3()), fmt::format("{:.0f}", s.total_volume_mm3()),
+                    fmt::format("{:.0f}", s.solid_volume_mm3()), fmt::format("{:.1f} %", 100 * s.ratio()),
+                    fmt::format("{:.0f}", s.printed_volume_mm3()), fmt::format("{:.1f} g", s.weight_g()),
+                    fmt::format("{:.4f} mm", s.max_displacement_mm())});
+  }
+  if (rows.size() == 1) return {};
+  return table(rows, 2) + "* largest displacement in the paper's model\n";
+}
+
+std::string end_report(const v1::Job& job) {
+  std::string out = state_and_reason(job);
+  if (!job.detail().empty()) out += ": " + one_line(job.detail());
+  out += "\n";
+  for (const v1::PrinterResult& printer : job.printers()) {
+    if (printer.reason() == v1::REASON_UNSPECIFIED) continue;
+    v1::JobEvent event;
+    *event.mutable_printer() = printer;
+    out += "  " + event_text(event) + "\n";
+  }
+  return out;
+}
+
+std::string job_description(const v1::Job& job) {
+  std::vector<Row> rows = {
+      {"job", one_line(job.job_id())},
+      {"state", state_and_reason(job) + (job.cancel_requested() ? " (cancel requested)" : "")},
+      {"mesh", one_line(job.spec().mesh_name())},
+      {"printers", printer_names(job)},
+      {"created", time_text(job.create_time())},
+      {"started", time_text(job.start_time())},
+      {"ended", time_text(job.end_time())},
+      {"attempt", fmt::format("{}", job.attempt())},
+      {"events", fmt::format("{}", job.last_sequence())}};
+  if (!job.detail().empty()) rows.push_back({"detail", one_line(job.detail())});
+  std::string out = table(rows, 2);
+  for (const v1::ResultFile& file : job.files()) {
+    out += fmt::format("file      {}  {} bytes\n", one_line(file.path()), file.size_bytes());
+  }
+  if (const std::string results = result_table(job); !results.empty()) out += "\n" + results;
+  for (const v1::PrinterResult& printer : job.printers()) {
+    if (printer.reason() == v1::REASON_UNSPECIFIED) continue;
+    v1::JobEvent event;
+    *event.mutable_printer() = printer;
+    out += event_text(event) + "\n";
+  }
+  return out;
+}
+
+std::string job_list(const std::vector<v1::Job>& jobs) {
+  std::vector<Row> rows = {{"job", "state", "created", "mesh", "printers"}};
+  for (const v1::Job& job : jobs) {
+    rows.push_back({one_line(job.job_id()), state_and_reason(job), time_text(job.create_time()),
+                    one_line(job.spec().mesh_name()), printer_names(job)});
+  }
+  return table(rows, 5);
+}
+
+std::string printer_list(const v1::ListPrintersResponse& printers) {
+  std::vector<Row> rows = {{"printer", "process", "material", "name", "radius mm", "tray mm"}};
+  for (const v1::PrinterProfile& p : printers.printers()) {
+    rows.push_back({one_line(p.id()), process_word(p.process()), one_line(p.default_material_id()),
+                    one_line(p.display_name()), fmt::format("{}", p.min_radius_mm()),
+                    fmt::format("{}x{}x{}", p.tray_x_mm(), p.tray_y_mm(), p.tray_z_mm())});
+  }
+  return table(rows, 4);
+}
+
+std::string material_list(const v1::ListMaterialsResponse& materials) {
+  std::vector<Row> rows = {{"material", "name", "tensile modulus MPa", "shear modulus MPa",
+                            "tensile strength MPa", "shear strength MPa", "slenderness", "density g/cm3",
+                            "price/kg"}};
+  for (const v1::MaterialProfile& m : materials.materials()) {
+    rows.push_back({one_line(m.id()), one_line(m.display_name()), fmt::format("{}", m.tensile_modulus_mpa()),
+                    fmt::format("{}", m.shear_modulus_mpa()),
+                    or_dash(m.has_tensile_strength_mpa(), m.tensile_strength_mpa(), "{}"),
+                    or_dash(m.has_shear_strength_mpa(), m.shear_strength_mpa(), "{}"),
+                    or_dash(m.has_slenderness(), m.slenderness(), "{}"), fmt::format("{}", m.density_g_cm3()),
+                    or_dash(m.has_price_per_kg(), m.price_per_kg(), "{:.2f}")});
+  }
+  return table(rows, 2);
+}
+
+}  // namespace skinframe::client

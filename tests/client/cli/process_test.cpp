@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program itself, started as a user starts it; server and worker are shell scripts where a verb needs
+// them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <stdlib.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+
+#include "tests/client/fake/fake_server.h"
+#include "tests/client/fake/temporary_folder.h"
+
+namespace skinframe::client {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+struct Ran {
+  int code = -1;
+  std::string out, err;
+};
+
+class Program : public fake::FakeServer {
+ protected:
+  // words as a shell takes them
+  Ran run(const std::string& words, const std::string& program = SKINFRAME_PROGRAM) {
+    const std::string command = "cd " + folder_.path().string() + " && env -u SKINFRAME_SERVER " +
+                                environment_ + " " + program + " " + words + " >out.txt 2>err.txt </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, folder_.read("out.txt"), folder_.read("err.txt")};
+  }
+  // A copy of the program with server and worker beside it that are scripts.
+  std::string install(const std::string& server, const std::string& worker) {
+    std::filesystem::create_directory(folder_.path() / "bin");
+    std::filesystem::copy_file(SKINFRAME_PROGRAM, folder_.path() / "bin" / "skinframe");
+    folder_.script("bin/skinframe-server", server);
+    folder_.script("bin/skinframe-worker", worker);
+    return folder_.path() / "bin" / "skinframe";
+  }
+  std::string mesh() { return folder_.write("mesh.stl", "mesh"); }
+
+  fake::TemporaryFolder folder_;
+  std::string environment_;
+};
+
+TEST_F(Program, AloneItTeachesAndSaysWrongUsage) {
+  const Ran ran = run("");
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, HasSubstr("skinframe run fish.obj"));
+}
+
+TEST_F(Program, EveryVerbTeachesWithAnExample) {
+  for (const char* verb : {"run", "submit", "watch", "get", "list", "cancel", "download", "printers",
+                           "materials", "delete", "sample", "check", "solve-frame"}) {
+    const Ran ran = run(std::string(verb) + " --help");
+    EXPECT_EQ(ran.code, 0) << verb;
+    EXPECT_THAT(ran.out, HasSubstr(std::string("  skinframe ") + verb)) << verb;
+  }
+  EXPECT_EQ(run("--version").code, 0);
+  EXPECT_THAT(run("--help").out, Not(HasSubstr("render")));
+}
+
+TEST_F(Program, WrongUsageIsTwoAndNamesTheWord) {
+  EXPECT_THAT(run("run mesh.stl --printer p --out o --colour red").err, HasSubstr("--colour"));
+  EXPECT_EQ(run("run mesh.stl --printer p --out o --colour red").code, 2);
+  EXPECT_EQ(run("frobnicate").code, 2);
+  EXPECT_EQ(run("run " + mesh() + " --out o").code, 2);
+  EXPECT_EQ(run("run " + mesh() + " --printer p --out o --load side:nowhere:1,2,3").code, 2);
+  EXPECT_EQ(run("run " + mesh() + " --printer p --out o --up sideways").code, 2);
+  EXPECT_EQ(run("submit " + mesh() + " --printer p --out o").code, 2);
+  EXPECT_EQ(run("list --state lost").code, 2);
+}
+
+TEST_F(Program, WhatIsNotBuiltSaysSo) {
+  const Ran ran = run("render dir");
+  EXPECT_EQ(ran.code, 2);
+  EXPECT_THAT(ran.err, HasSubstr("`render` is not built yet"));
+}
+
+TEST_F(Program, AMissingMeshIsThreeAndNamesIt) {
+  for (const char* verb : {"run", "submit"}) {
+    const Ran ran =
+        run(std::string(verb) + " no-such.stl --printer p" + (verb == std::string("run") ? " --out o" : ""));
+    EXPECT_EQ(ran.code, 3) << ran.err;
+    EXPECT_THAT(ran.err, HasSubstr("no-such.stl"));
+  }
+}
+
+TEST_F(Program, NoServerIsSevenAndNamesAddressAndRemedy) {
+  const Ran ran = run("--server 127.0.0.1:1 list");
+  EXPECT_EQ(ran.code, 7);
+  EXPECT_THAT(ran.err, testing::AllOf(HasSubstr("127.0.0.1:1"), HasSubstr("skinframe-server --data")));
+  EXPECT_EQ(run("list --server 127.0.0.1:1").code, 7) << "global options may stand behind the verb";
+}
+
+TEST_F(Program, AnUnknownJobIsNine) { EXPECT_EQ(run("--server " + address_ + " watch nobody").code, 9); }
+
+TEST_F(Program, TwoWatchersPrintTheSameLinesWheneverTheyStart) {
+  jobs_.job.set_job_id("j1");
+  jobs_.add_state(v1::JOB_STATE_QUEUED);
+  for (int i = 1; i < 50; ++i) jobs_.add_progress("size", i);
+  jobs_.add_state(v1::JOB_STATE_SUCCEEDED);
+  environment_ = "SKINFRAME_SERVER=" + address_;
+  const Ran all = run("watch j1");
+  EXPECT_EQ(all.code, 0) << all.err;
+  const Ran later = run("watch j1 --from 20");
+  EXPECT_THAT(all.out, testing::EndsWith(later.out));
+  EXPECT_EQ(std::count(all.out.begin(), all.out.end(), '\n'), 51);
+  EXPECT_EQ(std::count(later.out.begin(), later.out.end(), '\n'), 31);
+}
+
+TEST_F(Program, SubmitPrintsTheIdAloneAndAsJson) {
+  jobs_.job.set_job_id("j1");
+  environment_ = "SKINFRAME_SERVER=" + address_;
+  EXPECT_EQ(run("submit " + mesh() + " --printer p").out, "j1\n");
+  EXPECT_EQ(run("submit " + mesh() + " --printer p --json").out, "{\n  \"job_id\": \"j1\"\n}\n");
+  EXPECT_EQ(jobs_.submissions.at(0).spec().mesh_name(), "mesh.stl");
+}
+
+TEST_F(Program, SubmitWatchDownloadsAndTellsTheEndByItsExitCode) {
+  jobs_.job.set_job_id("j1");
+  jobs_.add_state(v1::JOB_STATE_FAILED);
+  jobs_.job.set_reason(v1::REASON_INFEASIBLE);
+  jobs_.job.set_detail("the displacement cannot be held");
+  environment_ = "SKINFRAME_SERVER=" + address_;
+  const Ran ran = run("submit " + mesh() + " --printer p --watch --out o");
+  EXPECT_EQ(ran.code, 4);
+  EXPECT_THAT(ran.err, HasSubstr("FAILED, INFEASIBLE: the displacement cannot be held"));
+}
+
+TEST_F(Program, LocalVerbsRunTheWorkerBesideUsAndHandItsExitCodeOn) {
+  const std::string program = install("exit 9\n", "echo \"$@\"; exit 1\n");
+  const Ran ran = run("check a-dir --deep", program);
+  EXPECT_EQ(ran.code, 1);
+  EXPECT_EQ(ran.out, "check a-dir --deep\n");
+  environment_ = "SKINFRAME_WORKER=" + folder_.script("other-worker", "echo other; exit 0\n");
+  EXPECT_EQ(run("sample --list", program).out, "other\n");
+  environment_ = "SKINFRAME_WORKER=/nowhere/worker";
+  EXPECT_EQ(run("sample --list", program).code, 5);
+}
+
+TEST_F(Program, RunStartsServerAndWorkerAndStopsThemAgain) {
+  jobs_.job.set_job_id("j1");
+  jobs_.add_state(v1::JOB_STATE_SUCCEEDED);
+  const std::string pids = folder_.path() / "pids";
+  // The script stands in for the server only in so far as it names the address of the one in this test.
+  const std::string stay = "echo $$ >>" + pids + "; trap 'exit 0' TERM; while :; do sleep 0.02; done\n";
+  const std::string program = install(
+      "while [ \"$1\" != --port-file ]; do shift; done\necho " + address_ + " >\"$2\"\n" + stay, stay);
+  const std::string temporary = folder_.path() / "tmp";
+  std::filesystem::create_directory(temporary);
+  environment_ = "TMPDIR=" + temporary;
+  const Ran ran = run("run " + mesh() + " --printer p --out o", program);
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_TRUE(std::filesystem::is_empty(temporary));
+  std::istringstream in(folder_.read("pids"));
+  for (std::string pid; in >> pid;) EXPECT_FALSE(std::filesystem::exists("/proc/" + pid)) << pid;
+}
+
+TEST_F(Program, AServerThatDoesNotStartIsFiveAndItsLogStays) {
+  const std::string program = install("echo 'the disk is full' >&2; exit 1\n", "exit 0\n");
+  environment_ = "TMPDIR=" + folder_.path().string();
+  const Ran ran = run("run " + mesh() + " --printer p --out o", program);
+  EXPECT_EQ(ran.code, 5);
+  EXPECT_THAT(ran.err, testing::AllOf(HasSubstr("the disk is full"), HasSubstr("skinframe-run-")));
+}
+
+}  // namespace
+}  // namespace skinframe::client

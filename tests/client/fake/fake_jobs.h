@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// A JobService of one job with given events, whose watch streams break as often as a test asks for.
+#pragma once
+
+#include <grpcpp/grpcpp.h>
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "skinframe/v1/job.grpc.pb.h"
+
+namespace skinframe::fake {
+
+class FakeJobs final : public v1::JobService::Service {
+ public:
+  std::mutex mutex;
+  v1::Job job;                             // what GetJob answers; NOT_FOUND for another id
+  std::vector<v1::JobEvent> events;        // sequence 1, 2, ...
+  std::vector<std::int64_t> watched_from;  // after_sequence of each stream
+  std::vector<std::size_t> break_after;    // events before the k-th stream breaks; none: it stays whole
+  std::vector<v1::SubmitJobRequest> submissions;  // each attempt
+  std::vector<grpc::Status> refusals;             // of the first submissions
+
+  void add_event(v1::JobEvent event) {
+    event.set_sequence(static_cast<std::int64_t>(events.size()) + 1);
+    events.push_back(std::move(event));
+    job.set_last_sequence(static_cast<std::int64_t>(events.size()));
+  }
+  void add_progress(const std::string& stage, int iteration) {
+    v1::JobEvent event;
+    event.mutable_progress()->set_stage(stage);
+    event.mutable_progress()->set_iteration(iteration);
+    add_event(event);
+  }
+  void add_state(v1::JobState state) {
+    v1::JobEvent event;
+    event.mutable_state()->set_state(state);
+    job.set_state(state);
+    add_event(event);
+  }
+
+  grpc::Status SubmitJob(grpc::ServerContext* context, const v1::SubmitJobRequest* request,
+                         v1::SubmitJobResponse* response) override {
+    const std::lock_guard lock(mutex);
+    submissions.push_back(*request);
+    if (submissions.size() <= refusals.size()) {
+      context->AddTrailingMetadata("retry-after-ms", "1234");
+      return refusals[submissions.size() - 1];
+    }
+    *response->mutable_job() = job;
+    return grpc::Status::OK;
+  }
+
+  grpc::Status GetJob(grpc::ServerContext*, const v1::GetJobRequest* request, v1::Job* response) override {
+    const std::lock_guard lock(mutex);
+    if (request->job_id() != job.job_id())
+      return {grpc::StatusCode::NOT_FOUND, "there is no job " + request->job_id()};
+    *response = job;
+    return grpc::Status::OK;
+  }
+
+  grpc::Status WatchJob(grpc::ServerContext*, const v1::WatchJobRequest* request,
+                        grpc::ServerWriter<v1::JobEvent>* writer) override {
+    const std::lock_guard lock(mutex);
+    const std::size_t stream = watched_from.size();
+    watched_from.push_back(request->after_sequence());
+    std::size_t sent = 0;
+    for (const v1::JobEvent& event : events) {
+      if (event.sequence() <= request->after_sequence()) continue;
+      if (stream < break_after.size() && sent == break_after[stream]) {
+        return {grpc::StatusCode::UNAVAILABLE, "connection lost"};
+      }
+      writer->Write(event);
+      ++sent;
+    }
+    return grpc::Status::OK;
+  }
+};
+
+}  // namespace skinframe::fake

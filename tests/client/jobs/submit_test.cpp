@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "client/call/retry.h"
+#include "client/jobs/client.h"
+#include "client/jobs/request_id.h"
+#include "tests/client/fake/fake_server.h"
+
+namespace skinframe::client {
+namespace {
+
+using std::chrono::milliseconds;
+
+class SubmitJob : public fake::FakeServer {
+ protected:
+  void SetUp() override {
+    FakeServer::SetUp();
+    jobs_.job.set_job_id("j1");
+  }
+};
+
+TEST_F(SubmitJob, ARetryCarriesTheSameRequestIdSoThatItMakesNoSecondJob) {
+  jobs_.refusals = {{grpc::StatusCode::UNAVAILABLE, "restarting"},
+                    {grpc::StatusCode::UNAVAILABLE, "restarting"}};
+  const auto submitted = submit_job(connection_, {});
+  ASSERT_TRUE(submitted.ok()) << submitted.failure().message;
+  EXPECT_EQ(submitted->job().job_id(), "j1");
+  ASSERT_EQ(jobs_.submissions.size(), 3u);
+  EXPECT_FALSE(jobs_.submissions[0].request_id().empty());
+  EXPECT_EQ(jobs_.submissions[0].request_id(), jobs_.submissions[2].request_id());
+}
+
+TEST_F(SubmitJob, AFullQueueIsAskedAgainAfterTheDelayThatTheServerNames) {
+  jobs_.refusals = {{grpc::StatusCode::RESOURCE_EXHAUSTED, "queue full"}};
+  ASSERT_TRUE(submit_job(connection_, {}).ok());
+  EXPECT_THAT(clock_.waits, testing::ElementsAre(milliseconds(1234)));
+}
+
+TEST_F(SubmitJob, AQueueThatStaysFullIsUnreachable) {
+  jobs_.refusals.assign(100, {grpc::StatusCode::RESOURCE_EXHAUSTED, "queue full"});
+  EXPECT_EQ(submit_job(connection_, {}).failure().kind, FailureKind::kUnreachable);
+}
+
+TEST_F(SubmitJob, AWrongRequestIsNotTriedAgain) {
+  jobs_.refusals = {{grpc::StatusCode::INVALID_ARGUMENT, "unknown printer teapot"}};
+  const auto submitted = submit_job(connection_, {});
+  ASSERT_FALSE(submitted.ok());
+  EXPECT_EQ(submitted.failure().kind, FailureKind::kUsage);
+  EXPECT_EQ(submitted.failure().message, "unknown printer teapot");
+  EXPECT_EQ(jobs_.submissions.size(), 1u);
+}
+
+TEST_F(SubmitJob, AnUnknownJobIsNotFound) {
+  EXPECT_EQ(get_job(connection_, "nobody").failure().kind, FailureKind::kNotFound);
+}
+
+TEST(Unreachable, TheSentenceNamesTheAddressAndTheRemedy) {
+  ConnectOptions options;
+  options.address = "127.0.0.1:1";
+  Connection connection = *connect(options);
+  fake::FakeClock clock;
+  connection.clock = &clock;
+  const auto job = get_job(connection, "j1");
+  ASSERT_FALSE(job.ok());
+  EXPECT_EQ(job.failure().kind, FailureKind::kUnreachable);
+  EXPECT_THAT(job.failure().message,
+              testing::AllOf(testing::HasSubstr("127.0.0.1:1"), testing::HasSubstr("skinframe-server")));
+}
+
+TEST(BackoffTest, DoublesUpToItsLongestAndKeepsToItsJitter) {
+  Backoff backoff(milliseconds(100), milliseconds(1000), 7);
+  for (const int step : {100, 200, 400, 800, 1000, 1000}) {
+    const auto delay = backoff.next();
+    EXPECT_GE(delay.count(), step / 2);
+    EXPECT_LE(delay.count(), step);
+  }
+  backoff.reset();
+  EXPECT_LE(backoff.next().count(), 100);
+}
+
+TEST(RequestId, IsWhatTheApiTakesAndNeverTheSame) {
+  const std::string id = new_request_id();
+  EXPECT_THAT(id, testing::MatchesRegex("[0-9a-f]+"));
+  EXPECT_LE(id.size(), 64u);
+  EXPECT_NE(id, new_request_id());
+}
+
+}  // namespace
+}  // namespace skinframe::client
