@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/jobs/decisions.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/server/fixture/example_job.h"
+
+namespace skinframe::server {
+namespace {
+
+using std::chrono::seconds;
+
+const AttemptPolicy kPolicy;
+
+JobRecord queued() { return example_job("job").record; }
+JobRecord running(std::int64_t token = 7) { return leased(queued(), token).record; }
+
+JobRecord after(const Decision& decision) {
+  EXPECT_TRUE(decision.ok()) << decision.status();
+  EXPECT_TRUE(decision.ok() && decision->has_value());
+  return decision.ok() && decision->has_value() ? (*decision)->record : JobRecord();
+}
+
+v1::CompleteRequest crash(std::int64_t token = 7) {
+  auto request = completion("job", token, v1::JOB_STATE_FAILED, v1::REASON_CRASHED);
+  request.set_retryable(true);
+  return request;
+}
+
+TEST(Submit, QueuesAndTellsSo) {
+  const Change change = example_job("job");
+  EXPECT_EQ(change.record.job.state(), v1::JOB_STATE_QUEUED);
+  ASSERT_EQ(change.events.size(), 1u);
+  EXPECT_EQ(change.events[0].state().state(), v1::JOB_STATE_QUEUED);
+}
+
+TEST(Cancel, EndsAQueuedJobAtOnce) {
+  const JobRecord job = after(decide_cancel(queued(), kNoon));
+  EXPECT_EQ(job.job.state(), v1::JOB_STATE_CANCELLED);
+  EXPECT_EQ(job.job.reason(), v1::REASON_CANCELLED);
+  EXPECT_TRUE(job.job.has_end_time());
+}
+
+TEST(Cancel, OnlyAsksARunningJobAndOnlyOnce) {
+  const JobRecord job = after(decide_cancel(running(), kNoon));
+  EXPECT_EQ(job.job.state(), v1::JOB_STATE_RUNNING);
+  EXPECT_TRUE(must_stop(job, kNoon));
+  EXPECT_FALSE(decide_cancel(job, kNoon)->has_value());
+}
+
+TEST(Cancel, LeavesAnEndedJobAsItIs) {
+  const JobRecord done =
+      after(decide_complete(running(), completion("job", 7, v1::JOB_STATE_SUCCEEDED), kNoon, kPolicy));
+  EXPECT_FALSE(decide_cancel(done, kNoon)->has_value());
+}
+
+TEST(Lease, CountsTheAttemptAndCarriesTheToken) {
+  const JobRecord job = running(42);
+  EXPECT_EQ(job.job.attempt(), 1);
+  EXPECT_EQ(job.lease.fencing_token, 42);
+  EXPECT_EQ(job.lease.expires, kNoon + kPolicy.lease);
+}
+
+TEST(Heartbeat, ProlongsTheLeaseAndMakesProgressEvents) {
+  auto request = heartbeat("job", 7);
+  request.add_progress()->set_stage("size");
+  request.add_progress()->set_stage("topology");
+  const Decision decision = decide_heartbeat(running(), request, kNoon + seconds(3), kPolicy);
+  EXPECT_EQ(after(decision).lease.expires, kNoon + seconds(3) + kPolicy.lease);
+  ASSERT_EQ((*decision)->events.size(), 2u);
+  EXPECT_EQ((*decision)->events[1].progress().stage(), "topology");
+  EXPECT_EQ((*decision)->events[1].progress().attempt(), 1);
+}
+
+TEST(Heartbeat, OfAStaleTokenIsAborted) {
+  EXPECT_TRUE(absl::IsAborted(decide_heartbeat(running(7), heartbeat("job", 6), kNoon, kPolicy).status()));
+  EXPECT_TRUE(absl::IsAborted(decide_heartbeat(queued(), heartbeat("job", 0), kNoon, kPolicy).status()));
+}
+
+TEST(Heartbeat, DoesNotProlongTheLeaseOfAJobThatShallStop) {
+  const JobRecord asked = after(decide_cancel(running(), kNoon));
+  const JobRecord job = after(decide_heartbeat(asked, heartbeat("job", 7), kNoon + seconds(5), kPolicy));
+  EXPECT_EQ(job.lease.expires, kNoon + kPolicy.lease);
+}
+
+TEST(Heartbeat, PrinterResultBecomesAnEventOnceAndUpdatesTheJob) {
+  auto request = heartbeat("job", 7);
+  request.add_printers()->set_printer_id("p");
+  request.mutable_printers(0)->set_state(v1::JOB_STATE_SUCCEEDED);
+  const Decision first = decide_heartbeat(running(), request, kNoon, kPolicy);
+  EXPECT_EQ((*first)->events.size(), 1u);
+  EXPECT_EQ(after(first).job.printers_size(), 1);
+  const Decision again = decide_heartbeat(after(first), request, kNoon, kPolicy);
+  EXPECT_TRUE((*again)->events.empty());
+  EXPECT_EQ(after(again).job.printers_size(), 1);
+}
+
+TEST(Complete, SucceedsWithFilesAndTellsPrintersBeforeTheState) {
+  auto request = completion("job", 7, v1::JOB_STATE_SUCCEEDED, v1::REASON_PARTIAL);
+  request.add_printers()->set_printer_id("p");
+  request.add_files()->set_path("report.json");
+  const Decision decision = decide_complete(running(), request, kNoon, kPolicy);
+  const JobRecord job = after(decision);
+  EXPECT_EQ(job.job.state(), v1::JOB_STATE_SUCCEEDED);
+  EXPECT_EQ(job.job.reason(), v1::REASON_PARTIAL);
+  EXPECT_EQ(job.job.files_size(), 1);
+  ASSERT_EQ((*decision)->events.size(), 2u);
+  EXPECT_TRUE((*decision)->events[0].has_printer());
+  EXPECT_TRUE((*decision)->events[1].has_state());
+}
+
+TEST(Complete, TheSameTwiceCountsOnceAndAnotherIsAborted) {
+  const auto request = completion("job", 7, v1::JOB_STATE_SUCCEEDED);
+  const JobRecord done = after(decide_complete(running(), request, kNoon, kPolicy));
+  const Decision again = decide_complete(done, request, kNoon, kPolicy);
+  ASSERT_TRUE(again.ok());
+  EXPECT_FALSE(again->has_value());
+  const auto other = completion("job", 7, v1::JOB_STATE_FAILED, v1::REASON_INTERNAL);
+  EXPECT_TRUE(absl::IsAborted(decide_complete(done, other, kNoon, kPolicy).status()));
+}
+
+TEST(Complete, RetryableTwiceLosesOneAttempt) {
+  const JobRecord once = after(decide_complete(running(), crash(), kNoon, kPolicy));
+  EXPECT_EQ(once.lost_attempts, 1);
+  EXPECT_FALSE(decide_complete(once, crash(), kNoon, kPolicy)->has_value());
+}
+
+TEST(Complete, FinishedWorkIsKeptThoughCancellationWasAsked) {
+  const JobRecord asked = after(decide_cancel(running(), kNoon));
+  const JobRecord done = after(decide_complete(asked, completion("job", 7, v1::JOB_STATE_SUCCEEDED), kNoon, kPolicy));
+  EXPECT_EQ(done.job.state(), v1::JOB_STATE_SUCCEEDED);
+}
+
+TEST(Complete, CancelledEndsAJobThatWasAskedTo) {
+  const JobRecord asked = after(decide_cancel(running(), kNoon));
+  const JobRecord done = after(decide_complete(asked, completion("job", 7, v1::JOB_STATE_CANCELLED), kNoon, kPolicy));
+  EXPECT_EQ(done.job.state(), v1::JOB_STATE_CANCELLED);
+}
+
+TEST(Complete, CancelledWithoutAnybodysWishIsALostAttempt) {
+  const JobRecord job =
+      after(decide_complete(running(), completion("job", 7, v1::JOB_STATE_CANCELLED), kNoon, kPolicy));
+  EXPECT_EQ(job.job.state(), v1::JOB_STATE_QUEUED);
+}
+
+TEST(LostAttempt, QueuesAgainNotBeforeTheBackoffAndForgetsPrinters) {
+  JobRecord job = running();
+  job.job.add_printers()->set_printer_id("p");
+  const JobRecord again = after(decide_lease_expired(job, kNoon + kPolicy.lease, kPolicy));
+  EXPECT_EQ(again.job.state(), v1::JOB_STATE_QUEUED);
+  EXPECT_GE(again.not_before, kNoon + kPolicy.lease + kPolicy.first_backoff / 2);
+  EXPECT_EQ(again.job.printers_size(), 0);
+  EXPECT_NE(again.job.detail().find("attempt 1 of 3 lost"), std::string::npos) << again.job.detail();
+}
+
+TEST(LostAttempt, ThirdOneFailsTheJobWithItsLastReason) {
+  JobRecord job = queued();
+  for (int attempt = 1; attempt <= 2; ++attempt) {
+    job = after(decide_complete(leased(job, attempt).record, crash(attempt), kNoon, kPolicy));
+    EXPECT_EQ(job.job.state(), v1::JOB_STATE_QUEUED) << attempt;
+  }
+  auto last = crash(3);
+  last.set_reason(v1::REASON_OUT_OF_MEMORY);
+  job = after(decide_complete(leased(job, 3).record, last, kNoon, kPolicy));
+  EXPECT_EQ(job.job.state(), v1::JOB_STATE_FAILED);
+  EXPECT_EQ(job.job.reason(), v1::REASON_OUT_OF_MEMORY);
+  EXPECT_NE(job.job.detail().find("3 attempts"), std::string::npos) << job.job.detail();
+}
+
+TEST(LeaseExpiry, DoesNothingToALeaseThatWasProlonged) {
+  EXPECT_FALSE(decide_lease_expired(running(), kNoon + kPolicy.lease - Milliseconds(1), kPolicy)->has_value());
+}
+
+TEST(LeaseExpiry, OfAJobAskedToStopCancelsIt) {
+  const JobRecord asked = after(decide_cancel(running(), kNoon));
+  EXPECT_EQ(after(decide_lease_expired(asked, kNoon + kPolicy.lease, kPolicy)).job.state(), v1::JOB_STATE_CANCELLED);
+}
+
+TEST(Deadline, EndsAQueuedJobAndStopsARunningOne) {
+  JobRecord record = example_record("job");
+  record.job.mutable_spec()->mutable_deadline()->set_seconds(60);
+  const JobRecord job = decide_submit(record, kNoon).record;
+  EXPECT_FALSE(decide_deadline(job, kNoon + Milliseconds(59'999))->has_value());
+  const JobRecord late = after(decide_deadline(job, kNoon + seconds(60)));
+  EXPECT_EQ(late.job.state(), v1::JOB_STATE_FAILED);
+  EXPECT_EQ(late.job.reason(), v1::REASON_TIMED_OUT);
+
+  const JobRecord started = leased(job, 7).record;
+  EXPECT_FALSE(decide_deadline(started, kNoon + seconds(60))->has_value());
+  EXPECT_TRUE(must_stop(started, kNoon + seconds(60)));
+  const JobRecord stopped = after(
+      decide_complete(started, completion("job", 7, v1::JOB_STATE_CANCELLED), kNoon + seconds(61), kPolicy));
+  EXPECT_EQ(stopped.job.state(), v1::JOB_STATE_FAILED);
+  EXPECT_EQ(stopped.job.reason(), v1::REASON_TIMED_OUT);
+}
+
+TEST(Delete, IsForEndedJobsOnly) {
+  EXPECT_TRUE(absl::IsFailedPrecondition(permit_delete(queued())));
+  EXPECT_TRUE(absl::IsFailedPrecondition(permit_delete(running())));
+  EXPECT_TRUE(permit_delete(after(decide_cancel(queued(), kNoon))).ok());
+}
+
+}  // namespace
+}  // namespace skinframe::server

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is particular to SQLite: its file, its migrations, its group commit.
+#include "server/store/sqlite_store.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "server/store/sqlite_migrations.h"
+#include "server/store/sqlite_writer.h"
+#include "tests/server/fixture/example_job.h"
+#include "tests/server/store/store_factory.h"
+
+namespace skinframe::server {
+namespace {
+
+class SqlitePlace final : public StorePlace {
+ public:
+  std::unique_ptr<JobStore> open(CommitListener* listener) override {
+    auto store = open_sqlite_store(folder_.path() / "jobs.sqlite", listener);
+    EXPECT_TRUE(store.ok()) << store.status();
+    return store.ok() ? *std::move(store) : nullptr;
+  }
+
+ private:
+  TemporaryFolder folder_;
+};
+
+std::unique_ptr<SqliteDatabase> open_database(const std::filesystem::path& file) {
+  auto database = SqliteDatabase::open(file, SqliteDatabase::Mode::kReadWrite);
+  EXPECT_TRUE(database.ok()) << database.status();
+  return *std::move(database);
+}
+
+std::int64_t integer_of(SqliteDatabase& database, const char* sql) {
+  SqliteStatement select(database, sql);
+  EXPECT_TRUE(select.step()) << select.status();
+  return select.integer(0);
+}
+
+TEST(SqliteDatabase, CommitsWaitForTheDisk) {
+  TemporaryFolder folder;
+  const auto database = open_database(folder.path() / "db");
+  EXPECT_EQ(integer_of(*database, "PRAGMA synchronous"), 2);  // FULL
+  SqliteStatement mode(*database, "PRAGMA journal_mode");
+  ASSERT_TRUE(mode.step());
+  EXPECT_EQ(mode.bytes(0), "wal");
+}
+
+TEST(Migrations, BringAnEmptyFileToTheNewestVersionAndAreNotAppliedTwice) {
+  TemporaryFolder folder;
+  const auto database = open_database(folder.path() / "db");
+  ASSERT_TRUE(migrate(*database, sqlite_migrations()).ok());
+  ASSERT_TRUE(migrate(*database, sqlite_migrations()).ok());
+  EXPECT_EQ(integer_of(*database, "SELECT count(*) FROM schema_version"),
+            static_cast<std::int64_t>(sqlite_migrations().size()));
+}
+
+TEST(Migrations, AreNumberedFromOneWithoutGap) {
+  int expected = 1;
+  for (const Migration& step : sqlite_migrations()) EXPECT_EQ(step.version, expected++);
+}
+
+TEST(Migrations, ContinueFromTheVersionThatIsThere) {
+  TemporaryFolder folder;
+  const auto database = open_database(folder.path() / "db");
+  const Migration steps[] = {{1, "one", "CREATE TABLE one (x INTEGER)"}, {2, "two", "CREATE TABLE two (x INTEGER)"}};
+  ASSERT_TRUE(migrate(*database, std::span(steps, 1)).ok());
+  ASSERT_TRUE(migrate(*database, steps).ok());
+  EXPECT_EQ(integer_of(*database, "SELECT count(*) FROM one, two"), 0);
+}
+
+TEST(Migrations, AFailedStepLeavesNothingBehind) {
+  TemporaryFolder folder;
+  const auto database = open_database(folder.path() / "db");
+  const Migration broken[] = {{1, "broken", "CREATE TABLE one (x INTEGER); CREATE TABEL two"}};
+  EXPECT_FALSE(migrate(*database, broken).ok());
+  EXPECT_EQ(integer_of(*database, "SELECT count(*) FROM sqlite_master WHERE name = 'one'"), 0);
+}
+
+TEST(Migrations, AStoreOfANewerServerIsRefused) {
+  TemporaryFolder folder;
+  const auto database = open_database(folder.path() / "db");
+  const Migration newer[] = {{1, "one", "SELECT 1"}, {99, "future", "SELECT 1"}};
+  ASSERT_TRUE(migrate(*database, newer).ok());
+  EXPECT_TRUE(absl::IsFailedPrecondition(migrate(*database, sqlite_migrations())));
+}
+
+TEST(SqliteWriter, WhatWaitsTogetherIsCommittedTogetherAndAFailingPartHarmsNobody) {
+  TemporaryFolder folder;
+  auto database = open_database(folder.path() / "db");
+  ASSERT_TRUE(database->execute("CREATE TABLE t (x INTEGER UNIQUE)").ok());
+  SqliteWriter writer(std::move(database), 256);
+  constexpr int kThreads = 32;
+  // The first part holds the writer until all others wait: they must share one commit.
+  std::atomic<int> waiting = 0;
+  const SqliteWriter::Work hold = [&](SqliteDatabase&) {
+    while (waiting < kThreads) std::this_thread::yield();
+    return absl::OkStatus();
+  };
+  std::thread first([&] { EXPECT_TRUE(writer.write(hold, [] {}).ok()); });
+  std::atomic<int> failed = 0;
+  std::vector<std::thread> threads;
+  for (int i = 0; i < kThreads; ++i) {
+    threads.emplace_back([&, i] {
+      const SqliteWriter::Work insert = [i](SqliteDatabase& db) {
+        SqliteStatement statement(db, "INSERT INTO t (x) VALUES (?)");
+        return statement.bind(i % 2 == 0 ? i : -1).run();  // all odd ones but the first collide
+      };
+      ++waiting;
+      if (!writer.write(insert, [] {}).ok()) ++failed;
+    });
+  }
+  first.join();
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(failed, kThreads / 2 - 1);
+  EXPECT_LT(writer.groups(), kThreads);
+  const auto reader = open_database(folder.path() / "db");
+  EXPECT_EQ(integer_of(*reader, "SELECT count(*) FROM t"), kThreads / 2 + 1);
+}
+
+}  // namespace
+
+std::vector<StoreKind> store_kinds() {
+  return {{"Sqlite", [] { return std::make_unique<SqlitePlace>(); }}};
+}
+
+}  // namespace skinframe::server
