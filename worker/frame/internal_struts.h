@@ -15,10 +15,4 @@ namespace skinframe {
 // node with fewer than three struts (nothing holds it) or without a path to the skin.
 void add_internal_struts(Frame& frame, double radius_mm, int neighbours, const Skin& skin);
 
-// piece_of: the piece of each skin node. Adds struts between nodes of different pieces, up to four a joint,
-// where a strut of the radius stays inside M, the nearest pieces first. Returns for each piece whether it
-// hangs together with piece 0.
-std::vector<bool> join_pieces(Frame& frame, const std::vector<int>& piece_of, double radius_mm,
-                              const Skin& skin);
-
 }  // namespace skinframe

@@ -10,13 +10,15 @@
 #include "worker/frame/base_contact.h"
 #include "worker/frame/internal_nodes.h"
 #include "worker/frame/internal_struts.h"
+#include "worker/frame/piece_joints.h"
 #include "worker/frame/triangulate_piece.h"
 #include "worker/frame/vertex_graph.h"
 
 namespace skinframe {
 namespace {
 
-constexpr double kLeastPieceNodes = 12.0;      // a piece that asks for fewer has no frame
+constexpr double kLeastPieceNodes = 12.0;  // a piece that asks for fewer has no frame
+constexpr std::size_t kMostPieces = 32;
 constexpr double kInternalPerSkinNode = 0.35;  // at most; the paper's frames have 0.12 to 0.44
 constexpr double kCellOfEdge =
     0.70710678118654752;                 // volume of a node's cell in a^3: nodes packed like spheres
@@ -42,7 +44,7 @@ std::vector<Piece> choose_pieces(const Skin& skin, double finger_edge, std::vect
     Piece piece;
     piece.edge_length_mm = edge_length_field(surface, finger_edge, skin.thickness_mm);
     piece.demand = node_demand(surface, piece.edge_length_mm);
-    if (piece.demand < kLeastPieceNodes && !pieces.empty()) {
+    if (!pieces.empty() && (piece.demand < kLeastPieceNodes || pieces.size() == kMostPieces)) {
       ++left_out;
       volume += signed_volume(surface);
       continue;
@@ -53,7 +55,7 @@ std::vector<Piece> choose_pieces(const Skin& skin, double finger_edge, std::vect
   if (left_out > 0) {
     warnings.push_back(
         fmt::format("{} small hollows of the body ({:.3g} mm3 together) have a skin but no frame: they "
-                    "are too small for a triangulation",
+                    "are too small or too many for a triangulation",
                     left_out, volume));
   }
   return pieces;
@@ -102,6 +104,16 @@ void pin_contact(std::vector<Piece>& pieces, double contact_z, double spacing) {
   }
 }
 
+void pin_joints(std::vector<Piece>& pieces, double radius, const Skin& skin) {
+  if (pieces.size() < 2) return;
+  std::vector<const TriangleMesh*> surfaces;
+  for (const Piece& piece : pieces) surfaces.push_back(&piece.surface);
+  const auto pins = joint_pins(surfaces, radius, skin);
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    pieces[i].sampling.pins.insert(pieces[i].sampling.pins.end(), pins[i].begin(), pins[i].end());
+  }
+}
+
 // From the coarse surface onto the fine field's M1, by a Newton step that is not let far.
 Eigen::Vector3d onto_m1(const Eigen::Vector3d& p, const Skin& skin) {
   const Eigen::Vector3d gradient = skin.field.gradient(p);
@@ -140,6 +152,7 @@ Result<Frame> sample_skin(std::vector<Piece>& pieces, const Skin& skin, const Fr
     const double typical =
         std::accumulate(lengths.begin(), lengths.end(), 0.0) / static_cast<double>(lengths.size());
     pin_contact(pieces, contact_z, kPinSpacingInEdges * typical);
+    pin_joints(pieces, options.strut_radius_mm, skin);
 
     Frame frame;
     std::vector<int> piece_of;

@@ -27,6 +27,7 @@ using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 constexpr int kRounds = 60;
 constexpr int kRoundsBeforeRim = 10;     // first even, then on the rim
 constexpr double kOntoRim = 0.35;        // in wanted edges: any node this near to the rim goes onto it
+constexpr double kCrowdsPin = 0.6;       // in wanted edges
 constexpr double kContactOntoRim = 0.6;  // the contact's outermost nodes come from further
 
 // The rim of the base contact: where edges of M1 cross its height.
@@ -94,11 +95,13 @@ Eigen::Vector3d lloyd_step(const HalfEdgeMesh& mesh, const NodeTraitsMap& traits
 
 class Relaxation {
  public:
-  Relaxation(const HalfEdgeMesh& surface, const std::vector<double>& edge_length, double contact_z)
+  Relaxation(const HalfEdgeMesh& surface, const std::vector<double>& edge_length, double contact_z,
+             std::vector<Eigen::Vector3d> pins)
       : surface_(surface),
         edge_length_(edge_length),
         contact_z_(contact_z),
-        rim_(rim_points(surface, contact_z)) {
+        rim_(rim_points(surface, contact_z)),
+        pins_(std::move(pins)) {
     tree_.insert(faces(surface).begin(), faces(surface).end(), surface);
     tree_.accelerate_distance_queries();
   }
@@ -129,6 +132,9 @@ class Relaxation {
     const Eigen::Vector3d p = to_eigen(mesh.point(v)), q = rim_.point(rim_.nearest(p));
     const double distance = (q - p).norm() / traits[v].edge_length_mm;
     if (distance > kContactOntoRim) return;
+    // A pin stands for the rim about it: another node there would only crowd.
+    const double crowd = kCrowdsPin * traits[v].edge_length_mm;
+    if (!pins_.empty() && (pins_.point(pins_.nearest(q)) - q).norm() < crowd) return;
     const auto in_contact = [&](Vertex w) { return mesh.point(w).z() <= contact_z_ + 1e-6; };
     bool outermost = in_contact(v);
     if (outermost) {
@@ -141,7 +147,7 @@ class Relaxation {
   const HalfEdgeMesh& surface_;
   const std::vector<double>& edge_length_;
   double contact_z_;
-  PointTree rim_;
+  PointTree rim_, pins_;
   Tree tree_;
 };
 
@@ -208,7 +214,9 @@ Result<TriangleMesh> triangulate_piece(const TriangleMesh& piece, const PieceSam
     for (int pin : sampling.pins) traits[Vertex(pin)].pinned = true;
     collapse_to_count(mesh, traits, sampling.nodes);
 
-    const Relaxation relaxation(*surface, edge_length, sampling.contact_z_mm);
+    std::vector<Eigen::Vector3d> pins;
+    for (int pin : sampling.pins) pins.push_back(piece.vertices[pin]);
+    const Relaxation relaxation(*surface, edge_length, sampling.contact_z_mm, std::move(pins));
     for (int round = 0; round < kRounds; ++round) {
       if (context.cancelled()) return cancelled_error();
       relaxation.round(mesh, traits, round >= kRoundsBeforeRim);

@@ -7,7 +7,7 @@
 //
 // Guarantees:
 //  1. Inside M the value is the distance everywhere: to about 0.05 voxel_mm in the fine band, to about
-//     0.1 coarse_voxel_mm deeper.
+//     0.1 coarse_voxel_mm deeper; on the medial axis, where it has a ridge, up to half a voxel too shallow.
 //  2. Outside M it is the distance up to outer_band_mm() and exactly +outer_band_mm() beyond.
 //  3. A default-made field is outside everywhere (at() = 0 with no band).
 //  4. Copies share one immutable state; reads from many threads at once are safe.

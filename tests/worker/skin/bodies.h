@@ -40,7 +40,8 @@ inline TriangleMesh blocks(const Eigen::Vector3i& cells, const Eigen::Vector3d& 
           for (int side = 0; side < 2; ++side) {
             const Eigen::Vector3i out = Eigen::Vector3i::Unit(axis);
             if (solid(side == 1 ? Eigen::Vector3i(p + out) : Eigen::Vector3i(p - out))) continue;
-            const Eigen::Vector3i u = Eigen::Vector3i::Unit((axis + 1) % 3), v = Eigen::Vector3i::Unit((axis + 2) % 3);
+            const Eigen::Vector3i u = Eigen::Vector3i::Unit((axis + 1) % 3),
+                                  v = Eigen::Vector3i::Unit((axis + 2) % 3);
             const Eigen::Vector3i o = p + side * out;
             std::array<int, 4> q{vertex(o), vertex(o + u), vertex(o + u + v), vertex(o + v)};
             if (side == 0) std::swap(q[1], q[3]);
@@ -79,11 +80,11 @@ inline TriangleMesh torus(double ring, double tube, int around = 96, int across 
 inline TriangleMesh sphere(double radius, int levels = 5) {
   const double g = std::numbers::phi;
   TriangleMesh mesh;
-  mesh.vertices = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  mesh.triangles = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8}, {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8},
-                    {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+  mesh.vertices = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  mesh.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                    {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                    {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
   for (int level = 0; level < levels; ++level) {
     std::map<std::pair<int, int>, int> middles;
     const auto middle = [&](int a, int b) {
@@ -94,7 +95,8 @@ inline TriangleMesh sphere(double radius, int levels = 5) {
     std::vector<std::array<int, 3>> finer;
     for (const auto& [a, b, c] : mesh.triangles) {
       const int ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
-      for (const auto& t : {std::array{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}}) finer.push_back(t);
+      for (const auto& t : {std::array{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}})
+        finer.push_back(t);
     }
     mesh.triangles = std::move(finer);
     for (auto& v : mesh.vertices) v.normalize();

@@ -71,7 +71,8 @@ TEST(BuildSkin, SameAtAnyThreadCount) {
   const TriangleMesh body = bodies::torus(20, 6);
   RunContext one, two;
   two.threads = 2;
-  const auto a = build_skin(body, {.thickness_mm = 1.0}, one), b = build_skin(body, {.thickness_mm = 1.0}, two);
+  const auto a = build_skin(body, {.thickness_mm = 1.0}, one),
+             b = build_skin(body, {.thickness_mm = 1.0}, two);
   ASSERT_TRUE(a.ok() && b.ok());
   EXPECT_EQ(a->cavity_volume_mm3, b->cavity_volume_mm3);
   EXPECT_EQ(a->inner_surface.vertices, b->inner_surface.vertices);
@@ -90,8 +91,10 @@ TEST(BuildSkin, RefusesOptionsOutOfRangeAndBodiesWithoutVolume) {
   RunContext context;
   const TriangleMesh body = bodies::box(10, 10, 10);
   EXPECT_EQ(build_skin(body, {.thickness_mm = 0.0}, context).error().kind, ErrorKind::kInvalidInput);
-  EXPECT_EQ(build_skin(body, {.thickness_mm = 1.0, .voxel_mm = 1.5}, context).error().kind, ErrorKind::kInvalidInput);
-  EXPECT_EQ(build_skin(TriangleMesh{}, {.thickness_mm = 1.0}, context).error().kind, ErrorKind::kInvalidInput);
+  EXPECT_EQ(build_skin(body, {.thickness_mm = 1.0, .voxel_mm = 1.5}, context).error().kind,
+            ErrorKind::kInvalidInput);
+  EXPECT_EQ(build_skin(TriangleMesh{}, {.thickness_mm = 1.0}, context).error().kind,
+            ErrorKind::kInvalidInput);
   TriangleMesh inside_out = body;
   for (auto& t : inside_out.triangles) std::swap(t[0], t[1]);
   EXPECT_EQ(build_skin(inside_out, {.thickness_mm = 1.0}, context).error().kind, ErrorKind::kInvalidInput);
@@ -102,7 +105,8 @@ TEST(BuildSkin, StopsWhenTheJobIsCancelled) {
   source.request_stop();
   RunContext context;
   context.stop = source.get_token();
-  EXPECT_EQ(build_skin(bodies::box(10, 10, 10), {.thickness_mm = 1.0}, context).error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(build_skin(bodies::box(10, 10, 10), {.thickness_mm = 1.0}, context).error().kind,
+            ErrorKind::kCancelled);
 }
 
 }  // namespace

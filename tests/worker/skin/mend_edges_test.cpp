@@ -27,7 +27,8 @@ TEST(MendEdges, PartsTwoCubesThatShareAnEdge) {
 }
 
 TEST(MendEdges, PartsEveryEdgeOfACheckerboard) {
-  TriangleMesh mesh = bodies::blocks({4, 4, 4}, {1, 1, 1}, [](int x, int y, int z) { return (x + y + z) % 2 == 0; });
+  TriangleMesh mesh =
+      bodies::blocks({4, 4, 4}, {1, 1, 1}, [](int x, int y, int z) { return (x + y + z) % 2 == 0; });
   ASSERT_GT(count_bad_edges(mesh), 50);
   EXPECT_TRUE(mend_edges(mesh).manifold);
   EXPECT_EQ(count_bad_edges(mesh), 0);
@@ -36,8 +37,8 @@ TEST(MendEdges, PartsEveryEdgeOfACheckerboard) {
 
 TEST(MendEdges, WeldsWhatFallsTogetherInFloat) {
   TriangleMesh mesh = bodies::sphere(1.0, 3);
-  for (auto& v : mesh.vertices) v *= 1e-7;             // a sphere smaller than a float's step
-  for (auto& v : mesh.vertices) v.x() += 1.0;          // at x = 1
+  for (auto& v : mesh.vertices) v *= 1e-7;     // a sphere smaller than a float's step
+  for (auto& v : mesh.vertices) v.x() += 1.0;  // at x = 1
   const EdgeMending mending = mend_edges(mesh);
   EXPECT_TRUE(mending.manifold);
   EXPECT_EQ(count_bad_edges(mesh), 0);
