@@ -61,8 +61,8 @@ class Field {
   }
   int node(std::size_t nodes) const {
     if (!value_->is_number_integer()) refuse(path_, "must be a whole number");
-    if (value_->is_number_unsigned() && value_->get<std::uint64_t>() < nodes)
-      return static_cast<int>(value_->get<std::uint64_t>());
+    const bool negative = !value_->is_number_unsigned() && value_->get<std::int64_t>() < 0;
+    if (!negative && value_->get<std::uint64_t>() < nodes) return value_->get<int>();
     refuse(path_, fmt::format("{} is not a node (0..{})", value_->dump(), nodes - 1));
   }
   template <int N>
