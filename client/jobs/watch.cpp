@@ -34,25 +34,20 @@ class Watch {
       request.set_after_sequence(last_);
       const auto reader = stub_->WatchJob(&context, request);
       v1::JobEvent event;
-      while (reader->Read(&event)) {
+      bool leave = false;
+      while (!leave && reader->Read(&event)) {
         if (event.sequence() != last_ + 1) {
           broken_ =
               Failure{FailureKind::kInternal, fmt::format("event {} came after {}", event.sequence(), last_)};
           break;
         }
         last_ = event.sequence();
-        seen = Seen::kEvents;
         const bool more = handler_(event);
-        if (event.has_state() && is_final(event.state().state())) {
-          seen = Seen::kFinalState;
-          break;
-        }
-        if (!more) {
-          seen = Seen::kEnough;
-          break;
-        }
+        const bool ended = event.has_state() && is_final(event.state().state());
+        seen = ended ? Seen::kFinalState : more ? Seen::kEvents : Seen::kEnough;
+        leave = seen != Seen::kEvents;
       }
-      context.TryCancel();
+      if (leave || broken_) context.TryCancel();
       return reader->Finish();
     });
   }

@@ -146,7 +146,7 @@ TEST_F(Program, RunStartsServerAndWorkerAndStopsThemAgain) {
   jobs_.add_state(v1::JOB_STATE_SUCCEEDED);
   const std::string pids = folder_.path() / "pids";
   // The script stands in for the server only in so far as it names the address of the one in this test.
-  const std::string stay = "echo $$ >>" + pids + "; trap 'exit 0' TERM; while :; do sleep 0.02; done\n";
+  const std::string stay = "echo $$ >>" + pids + "; trap 'kill $!; exit 0' TERM; tail -f /dev/null & wait\n";
   const std::string program = install(
       "while [ \"$1\" != --port-file ]; do shift; done\necho " + address_ + " >\"$2\"\n" + stay, stay);
   const std::string temporary = folder_.path() / "tmp";
