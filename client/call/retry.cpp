@@ -29,6 +29,13 @@ bool may_help(const grpc::Status& status, const RetryPolicy& policy) {
          (policy.queue_full && status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED);
 }
 
+// gRPC's "failed to connect to all addresses; last error: UNKNOWN: ipv4:...: Connection refused" by its last
+// part.
+std::string last_part(const std::string& message) {
+  const std::size_t colon = message.rfind(": ");
+  return colon == std::string::npos ? message : message.substr(colon + 2);
+}
+
 grpc::Status interrupted() { return {grpc::StatusCode::CANCELLED, "interrupted"}; }
 
 }  // namespace
@@ -87,7 +94,7 @@ Failure to_failure(const grpc::Status& status, const Connection& connection) {
           FailureKind::kUnreachable,
           fmt::format("no server answers at {} ({}); start one with `skinframe-server --data DIR`, or name "
                       "another with --server HOST:PORT or SKINFRAME_SERVER",
-                      connection.address, message)};
+                      connection.address, last_part(message))};
     case grpc::StatusCode::DEADLINE_EXCEEDED:
       return {FailureKind::kUnreachable,
               fmt::format("the server at {} does not answer in time; try again later", connection.address)};

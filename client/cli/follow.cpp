@@ -35,6 +35,7 @@ class CancelOnSignal {
     if (signal == SIGINT && ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1) {
       display_.pause(true);
       const Answer answer = interrupts_.ask("\nCancel the job? [y/N] ");
+      if (answer == Answer::kSignal) std::fputs("\n", stderr);  // nobody has ended the question's line
       display_.pause(false);
       if (answer == Answer::kNo) return;
     }
@@ -54,13 +55,20 @@ class CancelOnSignal {
   bool asked_ = false;
 };
 
+// Whether the end needs words beyond the table.
+bool all_well(v1::JobState state, v1::Reason reason) {
+  return state == v1::JOB_STATE_SUCCEEDED && reason == v1::REASON_UNSPECIFIED;
+}
+
 Done watch_with_display(const Connection& connection, Interrupts& interrupts, const std::string& job_id) {
   ProgressDisplay display(stderr, ::isatty(STDERR_FILENO) == 1, *connection.clock);
   const Interrupts::Handling handling(interrupts, CancelOnSignal(connection, interrupts, display, job_id));
   WatchOptions options;
   options.on_lost = [&] { display.say("the server does not answer; watching again as soon as it does"); };
   return watch_job(connection, job_id, options, [&](const v1::JobEvent& event) {
-    display.show(event);
+    const bool reported_later = event.has_state() && is_final(event.state().state()) &&
+                                !all_well(event.state().state(), event.state().reason());
+    if (!reported_later) display.show(event);
     return true;
   });
 }
@@ -72,7 +80,7 @@ void report(const v1::Job& job, bool json) {
     fmt::print("{}", result_table(job));
   }
   std::fflush(stdout);
-  if (job.state() != v1::JOB_STATE_SUCCEEDED || job.reason() != v1::REASON_UNSPECIFIED) {
+  if (!all_well(job.state(), job.reason())) {
     fmt::print(stderr, "skinframe: {}", end_report(job));
   }
 }
