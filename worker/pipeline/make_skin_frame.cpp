@@ -55,6 +55,20 @@ std::vector<std::string> honest_warnings(const PrinterProfile& printer) {
   return {};
 }
 
+PrinterReport begin_report(const PrinterRequest& request) {
+  PrinterReport report;
+  report.printer = request.printer.id;
+  report.material = request.material.id;
+  report.min_radius_mm = request.printer.min_radius_mm;
+  report.skin_thickness_mm = request.printer.skin_thickness_mm();
+  report.max_internal_radius_mm = request.printer.max_internal_radius_mm;
+  report.density_g_cm3 = request.material.density_g_cm3;
+  report.tray_mm = request.printer.tray_mm;
+  report.price_per_kg = request.price_per_kg;
+  report.warnings = honest_warnings(request.printer);
+  return report;
+}
+
 OptimizeOptions optimize_options(const JobOptions& options, const Skin& skin) {
   OptimizeOptions out;
   out.order = options.order == StageOrder::kPaper ? OptimizeOptions::Order::kPaper : OptimizeOptions::Order::kTight;
@@ -90,7 +104,6 @@ std::string termination_name(Termination termination) {
     case Termination::kOptimal: return "OPTIMAL";
     case Termination::kInfeasible: return "INFEASIBLE";
     case Termination::kIterationLimit: return "ITERATION_LIMIT";
-    case Termination::kStalled: return "INFEASIBLE";
   }
   return "INTERNAL";
 }
@@ -126,15 +139,7 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
                                       RunContext& context) {
   const PrinterProfile& printer = request.printer;
   if (auto fits = fits_tray(prepared.solid, printer); !fits) return fits.error();
-  PrinterReport report{.printer = printer.id,
-                       .material = request.material.id,
-                       .min_radius_mm = printer.min_radius_mm,
-                       .skin_thickness_mm = printer.skin_thickness_mm(),
-                       .max_internal_radius_mm = printer.max_internal_radius_mm,
-                       .density_g_cm3 = request.material.density_g_cm3,
-                       .tray_mm = printer.tray_mm,
-                       .price_per_kg = request.price_per_kg,
-                       .warnings = honest_warnings(printer)};
+  PrinterReport report = begin_report(request);
   std::optional<double> skin_volume_mm3;
   context.report = [&](const Progress& progress) {
     observer.progress({printer.id, progress, skin_volume_mm3, prepared.solid.volume_mm3()});
