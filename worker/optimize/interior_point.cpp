@@ -94,13 +94,7 @@ class InteriorPoint {
   }
 
   NewtonStep newton_step() const {
-    NewtonStep step;
-    step.point = kkt_.solve();
-    const VectorXd c = inequalities(program_, layout_, iterate_.point);
-    step.slacks = -(c + iterate_.slacks) - inequality_slopes(program_, layout_, iterate_.point, step.point);
-    step.duals = ((barrier_.value() - iterate_.duals.array() * step.slacks.array()) / iterate_.slacks.array() -
-                  iterate_.duals.array())
-                     .matrix();
+    NewtonStep step = complete_step(program_, layout_, iterate_, barrier_.value(), kkt_.solve());
     step.primal_length = longest(iterate_.slacks, step.slacks, barrier_.fraction_to_boundary());
     step.dual_length = longest(iterate_.duals, step.duals, barrier_.fraction_to_boundary());
     return step;

@@ -349,7 +349,7 @@ void KktSystem::back_substitute(const VectorXd& y, const VectorXd& r, VectorXd& 
   nodes -= solved_border_ * border;
 }
 
-ProgramVector KktSystem::solve() const {
+KktStep KktSystem::solve() const {
   VectorXd nodes, border;
   back_substitute(right_hand_side_, border_right_, nodes, border);
   for (int pass = 0; pass < kRefinements; ++pass) {
@@ -386,7 +386,7 @@ ProgramVector KktSystem::solve() const {
                       row_areas_.col(j).dot(border.head(layout_.row_count))) /
                     curvatures_[j];
   }
-  return step;
+  return {std::move(step), border.head(layout_.row_count)};
 }
 
 VectorXd KktSystem::strut_coordinates(int j, const ProgramVector& step) const {

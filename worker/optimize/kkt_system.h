@@ -23,13 +23,20 @@ struct Regularisation {
   double dual = 0;    // subtracted on the diagonal of the equilibrium rows
 };
 
+// The duals of the dense rows come out of the linear system itself. Recovered from their slacks they would be lost to
+// rounding: c sums over all struts, and z / s of an active row is huge.
+struct KktStep {
+  ProgramVector point;
+  Eigen::VectorXd row_duals;
+};
+
 class KktSystem {
  public:
   KktSystem(const FrameProgram& program, const InequalityLayout& layout);  // both must outlive it
 
   void assemble(const Iterate& iterate, double barrier, const Regularisation& regularisation);
   bool factorise();            // false: singular, or the wrong inertia
-  ProgramVector solve() const;  // the step, refined against the assembled matrix
+  KktStep solve() const;       // refined against the assembled matrix
 
  private:
   // One free axis of a node: its row in the node's block and the strut coordinates it moves, as

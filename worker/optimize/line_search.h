@@ -6,16 +6,9 @@
 #include <optional>
 #include <vector>
 
-#include "worker/optimize/iterate.h"
+#include "worker/optimize/newton_step.h"
 
 namespace skinframe {
-
-// A Newton step of point, slacks and duals, with the step lengths that keep the fraction to the boundary.
-struct NewtonStep {
-  ProgramVector point;
-  Eigen::VectorXd slacks, duals;
-  double primal_length = 1, dual_length = 1;
-};
 
 class LineSearch {
  public:

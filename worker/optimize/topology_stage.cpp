@@ -72,13 +72,16 @@ std::optional<Design> threshold_and_size(const Design& design, const std::vector
   if (removed.empty()) return std::nullopt;
   std::stable_sort(removed.begin(), removed.end(), [&](int a, int b) { return areas_mm2[a] > areas_mm2[b]; });
 
+  std::size_t tried = 0;  // struts of the try before
   for (double restored : kRestored) {
     const auto back = static_cast<std::size_t>(restored * static_cast<double>(removed.size()));
     for (std::size_t r = 0; r < back; ++r) keep[removed[r]] = true;
     Design shrunk = design;
     shrunk.areas_mm2 = areas_mm2;
     shrunk = reduced_design(shrunk, keep);
-    if (shrunk.problem.frame.struts.empty()) continue;
+    const std::size_t struts = shrunk.problem.frame.struts.size();
+    if (struts == 0 || struts == tried) continue;
+    tried = struts;
     const SizedFrame sized = size_frame(shrunk.problem, shrunk.areas_mm2, session);
     if (sized.cancelled) return std::nullopt;
     if (!sized.feasible() || sized.volume_mm3() > (1 + kVolumeTie) * design.volume_mm3) continue;

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "worker/optimize/interior_point.h"
-#include "worker/optimize/kkt_system.h"
+#include "worker/optimize/newton_step.h"
 
 namespace skinframe {
 namespace {
@@ -153,11 +153,7 @@ TEST_P(FrameProgramOf, NewtonStepLowersEveryKktEquationAlike) {
   KktSystem kkt(p, at);
   kkt.assemble(it, mu, {});
   kkt.factorise();  // the step is the Newton step whatever the inertia is
-  Iterate direction{kkt.solve(), {}, {}};
-  const VectorXd c = inequalities(p, at, it.point);
-  direction.slacks = -(c + it.slacks) - inequality_slopes(p, at, it.point, direction.point);
-  direction.duals =
-      ((mu - it.duals.array() * direction.slacks.array()) / it.slacks.array() - it.duals.array()).matrix();
+  const NewtonStep direction = complete_step(p, at, it, mu, kkt.solve());
 
   const VectorXd before = kkt_equations(p, at, it, mu);
   const auto remainder = [&](double h) {
