@@ -3,7 +3,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cstdint>
 #include <map>
+#include <unordered_map>
+#include <unordered_set>
 
 #include "worker/solid/half_edges.h"
 #include "worker/solid/hole_patch.h"
@@ -22,13 +25,31 @@ Opening make_opening(const TriangleMesh& mesh, std::vector<int> loop) {
   return opening;
 }
 
+// The edges that exist, between vertices either way round; grows with what is filled.
+class EdgeSet {
+ public:
+  explicit EdgeSet(const TriangleMesh& mesh) {
+    keys_.reserve(2 * mesh.triangles.size());
+    for (const auto& t : mesh.triangles) add(t);
+  }
+  void add(const std::array<int, 3>& t) {
+    for (int k = 0; k < 3; ++k) keys_.insert(key(t[k], t[(k + 1) % 3]));
+  }
+  bool contains(int a, int b) const { return keys_.count(key(a, b)) > 0; }
+
+ private:
+  static std::uint64_t key(int a, int b) {
+    return static_cast<std::uint64_t>(std::min(a, b)) << 32 | static_cast<std::uint32_t>(std::max(a, b));
+  }
+  std::unordered_set<std::uint64_t> keys_;
+};
+
 // Each edge of the loop once in the loop's sense, each inner edge twice and new to the mesh, no vertex left
 // over.
-bool fits(const TriangleMesh& mesh, const std::vector<int>& loop,
+bool fits(const EdgeSet& existing, const std::vector<int>& loop,
           const std::vector<std::array<int, 3>>& patch) {
   const int n = static_cast<int>(loop.size());
   if (static_cast<int>(patch.size()) != n - 2) return false;
-  const EdgeTable existing(mesh);
   std::map<std::pair<int, int>, int> uses;
   for (const auto& t : patch) {
     for (int k = 0; k < 3; ++k) {
@@ -63,31 +84,43 @@ std::vector<Opening> find_openings(const TriangleMesh& mesh) {
   std::sort(open.begin(), open.end());
   for (const int h : open) leaving.emplace(target_of(mesh, h), origin_of(mesh, h));
   std::vector<Opening> openings;
+  std::unordered_map<int, std::size_t> place_in_path;
   for (const int h : open) {
     std::vector<int> path{target_of(mesh, h)};
+    place_in_path = {{path[0], 0}};
     for (auto step = leaving.find(path.back()); step != leaving.end(); step = leaving.find(path.back())) {
       const int to = step->second;
       leaving.erase(step);
-      const auto before = std::find(path.begin(), path.end(), to);
-      if (before == path.end()) {
+      const auto [place, is_new] = place_in_path.try_emplace(to, path.size());
+      if (is_new) {
         path.push_back(to);
         continue;
       }
-      openings.push_back(make_opening(mesh, {before, path.end()}));
-      path.erase(before + 1, path.end());
+      const auto first = path.begin() + static_cast<std::ptrdiff_t>(place->second);
+      openings.push_back(make_opening(mesh, {first, path.end()}));
+      for (auto passed = first + 1; passed != path.end(); ++passed) place_in_path.erase(*passed);
+      path.erase(first + 1, path.end());
     }
   }
   return openings;
 }
 
-void fill_opening(TriangleMesh& mesh, const Opening& opening) {
-  std::vector<Eigen::Vector3d> points;
-  points.reserve(opening.loop.size());
-  for (const int v : opening.loop) points.push_back(mesh.vertices[v]);
-  const auto patch = triangulate_closed_polyline(points);
-  if (!fits(mesh, opening.loop, patch)) return fan(mesh, opening);
-  for (const auto& t : patch)
-    mesh.triangles.push_back({opening.loop[t[0]], opening.loop[t[1]], opening.loop[t[2]]});
+void fill_openings(TriangleMesh& mesh, const std::vector<Opening>& openings) {
+  EdgeSet existing(mesh);
+  for (const Opening& opening : openings) {
+    std::vector<Eigen::Vector3d> points;
+    points.reserve(opening.loop.size());
+    for (const int v : opening.loop) points.push_back(mesh.vertices[v]);
+    const auto patch = triangulate_closed_polyline(points);
+    const std::size_t before = mesh.triangles.size();
+    if (fits(existing, opening.loop, patch)) {
+      for (const auto& [a, b, c] : patch)
+        mesh.triangles.push_back({opening.loop[a], opening.loop[b], opening.loop[c]});
+    } else {
+      fan(mesh, opening);
+    }
+    for (std::size_t t = before; t < mesh.triangles.size(); ++t) existing.add(mesh.triangles[t]);
+  }
 }
 
 }  // namespace skinframe

@@ -18,8 +18,8 @@ struct Opening {
 // In order of the lowest half-edge. A loop that passes a vertex twice is split there into simple loops.
 std::vector<Opening> find_openings(const TriangleMesh& mesh);
 
-// Adds triangles (Liepa 2003, the least worst dihedral angle, then area) that close the opening; where their
+// Adds triangles that close the openings (Liepa 2003: the least worst dihedral angle, then area); where their
 // inner edges would meet edges that exist, a fan from the middle of the loop instead.
-void fill_opening(TriangleMesh& mesh, const Opening& opening);
+void fill_openings(TriangleMesh& mesh, const std::vector<Opening>& openings);
 
 }  // namespace skinframe

@@ -24,16 +24,11 @@ EdgeTable::EdgeTable(const TriangleMesh& mesh) {
   half_edges_.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
     if (i == 0 || uses[i].first != uses[i - 1].first) {
-      keys_.push_back(uses[i].first);
       starts_.push_back(i);
     }
     half_edges_.push_back(uses[i].second);
   }
   starts_.push_back(count);
-}
-
-bool EdgeTable::contains(int a, int b) const {
-  return std::binary_search(keys_.begin(), keys_.end(), edge_key(a, b));
 }
 
 }  // namespace skinframe

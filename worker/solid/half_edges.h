@@ -33,10 +33,8 @@ class EdgeTable {
   std::span<const int> half_edges(std::size_t edge) const {
     return {half_edges_.data() + starts_[edge], half_edges_.data() + starts_[edge + 1]};
   }
-  bool contains(int a, int b) const;  // an edge between these vertices, either way
 
  private:
-  std::vector<std::uint64_t> keys_;  // of each edge, ascending
   std::vector<int> half_edges_;
   std::vector<std::size_t> starts_;
 };

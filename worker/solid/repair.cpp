@@ -24,6 +24,9 @@ constexpr double kEmptyShellVolumeRelative = 1e-12;
 // printer.
 constexpr double kPartingGapRelative = 2e-6;
 
+// A wider weld may collapse at most one in so many triangles.
+constexpr std::size_t kMostEatenPart = 100;
+
 std::string counted(std::size_t count, std::string_view noun, std::string_view plural) {
   return fmt::format("{} {}", count, count == 1 ? noun : plural);
 }
@@ -62,7 +65,10 @@ void weld_until_closed(TriangleMesh& mesh, const RepairOptions& options, double 
     const std::size_t joined = weld(attempt, relative * diagonal);
     drop_degenerate(attempt);
     const std::size_t open = count_open_edges(attempt);
-    if (best_tolerance < 0 || (open < best_open && !attempt.triangles.empty())) {
+    // A tolerance near the size of the triangles shortens an opening by eating its rim: that mends nothing.
+    const bool eats =
+        attempt.triangles.size() + best.triangles.size() / kMostEatenPart < best.triangles.size();
+    if (best_tolerance < 0 || (open < best_open && !eats)) {
       best = std::move(attempt);
       best_open = open;
       best_joined = joined;
@@ -76,9 +82,10 @@ void weld_until_closed(TriangleMesh& mesh, const RepairOptions& options, double 
     repairs.push_back(fmt::format("joined {} within {:.3g} mm", counted(best_joined, "vertex", "vertices"),
                                   best_tolerance));
   }
-  if (dropped > 0)
+  if (dropped > 0) {
     repairs.push_back(
         fmt::format("dropped {}", counted(dropped, "collapsed triangle", "collapsed triangles")));
+  }
 }
 
 void remove_duplicates(TriangleMesh& mesh, Sentences& repairs) {
@@ -112,14 +119,16 @@ Status fill_small_openings(TriangleMesh& mesh, const RepairOptions& options, dou
                     counted(openings.size(), "opening", "openings"), edges, longest.length,
                     longest.middle.x(), longest.middle.y(), longest.middle.z(), limit));
   }
-  for (const Opening& o : openings) fill_opening(mesh, o);
+  fill_openings(mesh, openings);
   repairs.push_back(fmt::format("filled {} of {} edges, the longest {:.3g} mm around",
                                 counted(openings.size(), "hole", "holes"), edges, longest.length));
   return ok_status();
 }
 
-void turn_outward(TriangleMesh& mesh, bool trust_file_senses, Sentences& repairs) {
-  const NestingCounts counts = nest_shells(mesh, trust_file_senses);
+Status turn_outward(TriangleMesh& mesh, bool trust_file_senses, Sentences& repairs) {
+  const Result<NestingCounts> nesting = nest_shells(mesh, trust_file_senses);
+  if (!nesting.ok()) return nesting.error();
+  const NestingCounts& counts = *nesting;
   if (counts.turned > 0) {
     repairs.push_back(fmt::format("turned {} inside out", counted(counts.turned, "shell", "shells")));
   }
@@ -127,6 +136,7 @@ void turn_outward(TriangleMesh& mesh, bool trust_file_senses, Sentences& repairs
     repairs.push_back(fmt::format("dropped {} within the material of another",
                                   counted(counts.swallowed, "shell", "shells")));
   }
+  return ok_status();
 }
 
 Result<RepairOutcome> run_chain(TriangleMesh mesh, const RepairOptions& options, RunContext& context) {
@@ -163,7 +173,7 @@ Result<RepairOutcome> run_chain(TriangleMesh mesh, const RepairOptions& options,
     repairs.push_back(
         fmt::format("dropped {} that enclose nothing", counted(empty, "closed sheet", "closed sheets")));
   }
-  turn_outward(mesh, *turned == 0, repairs);
+  if (Status s = turn_outward(mesh, *turned == 0, repairs); !s.ok()) return s.error();
   if (context.cancelled()) return cancelled_error();
 
   Result<Solid> solid = Solid::make(std::move(mesh));

@@ -21,7 +21,8 @@ struct RepairOptions {
   // Vertices closer than this times the diagonal of the bounding box become one. In [0, 1e-2].
   double weld_tolerance_relative = 1e-6;
   // A weld at the tolerance above that leaves the mesh open is tried again with a tolerance ten times
-  // as large, up to this one. In [weld_tolerance_relative, 1e-2].
+  // as large, up to this one, unless it would collapse more than 1 % of the triangles.
+  // In [weld_tolerance_relative, 1e-2].
   double max_weld_tolerance_relative = 1e-4;
   // A hole is filled when its boundary is not longer than this times the diagonal. In [0, 1].
   double max_hole_relative = 0.1;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/solid/shells.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -122,9 +124,14 @@ std::size_t drop_empty_shells(TriangleMesh& mesh, double volume) {
   return count;
 }
 
-NestingCounts nest_shells(TriangleMesh& mesh, bool trust_file_senses) {
+Result<NestingCounts> nest_shells(TriangleMesh& mesh, bool trust_file_senses) {
   NestingCounts counts;
   const std::vector<Shell> shells = find_shells(mesh);
+  if (shells.size() > kMostShells) {
+    return invalid_input(
+        fmt::format("the mesh falls into {} unconnected shells, more than the limit of {}; unite its parts",
+                    shells.size(), kMostShells));
+  }
   std::vector<char> dropped(shells.size(), 0);
   for (std::size_t s = 0; s < shells.size(); ++s) {
     int depth = 0;

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "worker/mesh/triangle_mesh.h"
+#include "worker/run/result.h"
 
 namespace skinframe {
 
@@ -15,6 +16,9 @@ std::size_t drop_small_open_shells(TriangleMesh& mesh, double size);
 // many.
 std::size_t drop_empty_shells(TriangleMesh& mesh, double volume);
 
+// Nesting compares shells in pairs: a mesh of more shells than this is refused.
+inline constexpr std::size_t kMostShells = 10'000;
+
 struct NestingCounts {
   std::size_t turned = 0;     // shells turned round
   std::size_t cavities = 0;   // shells that look inward
@@ -24,6 +28,7 @@ struct NestingCounts {
 // Turns closed shells so that the material lies inside. Where the file's senses can be trusted, a shell
 // within another is a cavity when it looks the other way and is swallowed when it looks the same way (the
 // non-zero rule of slicers); otherwise depth alone decides (even: body, odd: cavity).
-NestingCounts nest_shells(TriangleMesh& mesh, bool trust_file_senses);
+// Error: more than kMostShells.
+Result<NestingCounts> nest_shells(TriangleMesh& mesh, bool trust_file_senses);
 
 }  // namespace skinframe

@@ -226,6 +226,29 @@ TEST(Repair, EverythingAtOnceIsMended) {
   EXPECT_EQ(outcome->repairs.size(), 4u);
 }
 
+TEST(Repair, MoreShellsThanCanBeComparedAreRefused) {
+  TriangleMesh dust;
+  for (int i = 0; i < 10'001; ++i)
+    dust = merged(std::move(dust), moved(cube(1), {2.0 * (i % 100), 2.0 * (i / 100), 0}));
+  EXPECT_THAT(refusal_of(dust), HasSubstr("10001 unconnected shells"));
+}
+
+TEST(Repair, ALongOpeningIsRefusedInTime) {
+  TriangleMesh tube;  // 50,000 quads around, open at both ends
+  constexpr int kAround = 50'000;
+  for (int i = 0; i < kAround; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kAround;
+    for (const double z : {0.0, 50.0})
+      tube.vertices.emplace_back(1e4 * std::cos(angle), 1e4 * std::sin(angle), z);
+  }
+  for (int i = 0; i < kAround; ++i) {
+    const int a = 2 * i, b = 2 * ((i + 1) % kAround);
+    tube.triangles.push_back({a, b, b + 1});
+    tube.triangles.push_back({a, b + 1, a + 1});
+  }
+  EXPECT_THAT(refusal_of(tube), HasSubstr("2 openings, 100000 boundary edges"));
+}
+
 TEST(Repair, CancellationIsObeyed) {
   std::stop_source stop;
   stop.request_stop();
