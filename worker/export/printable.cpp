@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "worker/export/strut_level_set.h"
+#include "worker/export/thin_out.h"
 #include "worker/frame/vertex_graph.h"
 #include "worker/skin/distance_grids.h"
 #include "worker/skin/level_set.h"
@@ -21,20 +22,16 @@ namespace skinframe {
 namespace {
 
 constexpr double kBandVoxels = 3.0;
-constexpr double kMaxSurfaceSquares = 3e6;   // as in build_skin.cpp: some 600 MB while the grid is made
-constexpr double kFinestVoxelInRadii = 0.6;  // the default lies between these, by the triangles it makes
-constexpr double kCoarsestVoxelInRadii = 0.8;
-constexpr double kTrianglesAimed = 1e6;
-constexpr double kTrianglesPerSquare = 3.0;  // of a surface without preferred direction, by square voxel
+constexpr double kMaxSurfaceSquares = 3e6;  // as in build_skin.cpp: some 600 MB while the grid is made
+constexpr double kVoxelInRadii = 0.6;       // of the thinnest strut
+constexpr double kThinningInVoxels = 0.1;   // tolerance of the thinning
 
 Result<double> choose_voxel(const ExportOptions& options, const Skin& skin,
                             const std::vector<double>& radii_mm, double area_mm2) {
   const double least = std::sqrt(area_mm2 / kMaxSurfaceSquares);
   double thinnest = 0.5 * skin.thickness_mm;
   if (!radii_mm.empty()) thinnest = *std::min_element(radii_mm.begin(), radii_mm.end());
-  const double by_triangles = std::sqrt(kTrianglesPerSquare * area_mm2 / kTrianglesAimed);
-  const double fallback = std::max(
-      least, std::clamp(by_triangles, kFinestVoxelInRadii * thinnest, kCoarsestVoxelInRadii * thinnest));
+  const double fallback = std::max(least, kVoxelInRadii * thinnest);
   const double voxel = options.voxel_mm.value_or(std::min(fallback, skin.thickness_mm));
   if (voxel < least * (1.0 - 1e-9) || voxel > skin.thickness_mm) {
     return invalid_input(
@@ -106,9 +103,13 @@ Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Fr
   PrintableMesh result;
   result.voxel_mm = *voxel;
   cavity = drop_small_shells(cavity, options.smallest_pocket_mm3, result);
-  if (!mend_edges(cavity).manifold) {
-    return internal_error("the boundary of the cavity is not closed: try another --voxel");
+  bool manifold = mend_edges(cavity).manifold;
+  if (context.cancelled()) return cancelled_error();
+  if (manifold && options.max_triangles > 0) {
+    thin_out(cavity, options.max_triangles, kThinningInVoxels * *voxel);
+    manifold = mend_edges(cavity).manifold;  // places rounded to float may fall together
   }
+  if (!manifold) return internal_error("the boundary of the cavity is not closed: try another --voxel");
   result.cavity_volume_mm3 = signed_volume(cavity);
   result.volume_mm3 = signed_volume(mesh) - result.cavity_volume_mm3;
 

@@ -12,6 +12,7 @@
 //  3. volume_mm3 = volume of M - cavity_volume_mm3, both of the mesh as it is.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -23,8 +24,9 @@
 namespace skinframe {
 
 struct ExportOptions {
-  std::optional<double> voxel_mm;    // default 0.6 of the smallest radius, at least the skin's own voxel
-  double smallest_pocket_mm3 = 1.0;  // sealed pockets below are filled, >= 0
+  std::optional<double> voxel_mm;       // default 0.6 of the smallest radius, coarser on large bodies
+  std::size_t max_triangles = 800'000;  // of the cavity: thinned to this within 0.1 voxel; 0 = not thinned
+  double smallest_pocket_mm3 = 1.0;     // sealed pockets below are filled, >= 0
   Status validate() const;
 };
 
