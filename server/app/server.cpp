@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/grpcpp.h>
 #include <grpcpp/health_check_service_interface.h>
 #include <spdlog/spdlog.h>
 
@@ -29,7 +30,7 @@ namespace {
 constexpr int kExecutorThreads = 32;  // as many writes as one commit can hold
 constexpr std::size_t kMostWatchers = 10'000;
 constexpr Milliseconds kDutyPause{100};
-constexpr std::chrono::seconds kStopPatience{3};
+constexpr std::chrono::seconds kStopPatience{1};  // for calls under way; uploads resume, the rest takes less
 constexpr int kLargestMessageBytes = 4 << 20;
 constexpr const char* kServices[] = {"skinframe.v1.JobService", "skinframe.v1.ArtifactService",
                                      "skinframe.v1.CatalogService", "skinframe.v1.WorkerService"};
@@ -153,10 +154,6 @@ Server::Server(std::unique_ptr<Rooms> rooms) : rooms_(std::move(rooms)) {}
 Server::~Server() { stop(); }
 
 const std::string& Server::address() const { return rooms_->address; }
-
-std::shared_ptr<grpc::Channel> Server::in_process_channel() {
-  return rooms_->grpc_server->InProcessChannel(grpc::ChannelArguments());
-}
 
 void Server::stop() {
   rooms_->duties.reset();

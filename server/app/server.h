@@ -5,8 +5,6 @@
 #include <memory>
 #include <string>
 
-#include <grpcpp/grpcpp.h>
-
 #include "absl/status/statusor.h"
 #include "server/app/options.h"
 #include "server/jobs/clock.h"
@@ -24,9 +22,8 @@ class Server {
   Server& operator=(const Server&) = delete;
 
   const std::string& address() const;  // host:port as bound
-  std::shared_ptr<grpc::Channel> in_process_channel();
 
-  // Takes no new calls; ends watches and waiting leases with UNAVAILABLE; gives other calls a few seconds. What was
+  // Takes no new calls; ends watches and waiting leases with UNAVAILABLE; gives other calls a second. What was
   // acknowledged is durable with or without it.
   void stop();
 

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// SubmitJob: each status that job.proto documents.
+#include "tests/server/api/api_fixture.h"
+
+namespace skinframe::server {
+namespace {
+
+class SubmitTest : public ApiTest {
+ protected:
+  v1::SubmitJobRequest request(const std::string& request_id = "") {
+    v1::SubmitJobRequest request;
+    request.set_request_id(request_id);
+    *request.mutable_spec() = spec();
+    return request;
+  }
+};
+
+TEST_F(SubmitTest, ReturnsTheQueuedJobAndItsPlace) {
+  submit();
+  v1::SubmitJobResponse response;
+  ASSERT_TRUE(submit(request(), &response).ok());
+  EXPECT_EQ(response.job().state(), v1::JOB_STATE_QUEUED);
+  EXPECT_EQ(response.job().job_id().size(), 32u);
+  EXPECT_EQ(response.job().last_sequence(), 1);
+  EXPECT_EQ(response.queued_before(), 1);
+}
+
+TEST_F(SubmitTest, TheSameRequestIsTheSameJobAlsoAfterARestart) {
+  v1::SubmitJobResponse first;
+  v1::SubmitJobResponse second;
+  ASSERT_TRUE(submit(request("r"), &first).ok());
+  restart();
+  ASSERT_TRUE(submit(request("r"), &second).ok());
+  EXPECT_EQ(first.job().job_id(), second.job().job_id());
+}
+
+TEST_F(SubmitTest, TheSameRequestIdWithAnotherSpecAlreadyExists) {
+  ASSERT_TRUE(submit(request("r")).ok());
+  auto other = request("r");
+  other.mutable_spec()->set_priority(1);
+  EXPECT_EQ(submit(other).error_code(), grpc::StatusCode::ALREADY_EXISTS);
+}
+
+TEST_F(SubmitTest, WrongSpecsAndRequestIdsAreInvalidArguments) {
+  auto printer = request();
+  printer.mutable_spec()->mutable_printers(0)->set_printer_id("x");
+  const grpc::Status status = submit(printer);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(status.error_message(), "unknown printer \"x\"; known: makerbot-replicator-2, sinterstation-hiq");
+  EXPECT_EQ(submit(request("not an id")).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+}
+
+TEST_F(SubmitTest, WhatIsNotBuiltIsUnimplemented) {
+  auto smooth = request();
+  smooth.mutable_spec()->mutable_options()->set_smooth(v1::SMOOTH_ON);
+  EXPECT_EQ(submit(smooth).error_code(), grpc::StatusCode::UNIMPLEMENTED);
+}
+
+TEST_F(SubmitTest, AMeshThatIsNotUploadedIsAFailedPrecondition) {
+  auto absent = request();
+  absent.mutable_spec()->set_mesh_sha256(std::string(64, '0'));
+  EXPECT_EQ(submit(absent).error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+}
+
+TEST_F(SubmitTest, AFullQueueIsResourceExhaustedWithATimeToRetry) {
+  server_.reset();
+  options_.queue_limit = 1;
+  start();
+  ASSERT_TRUE(submit(request("first")).ok());
+  grpc::ClientContext context;
+  set_deadline(context);
+  v1::SubmitJobResponse response;
+  const grpc::Status status = jobs_->SubmitJob(&context, request("second"), &response);
+  EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  const auto& trailers = context.GetServerTrailingMetadata();
+  const auto retry = trailers.find("retry-after-ms");
+  ASSERT_NE(retry, trailers.end());
+  EXPECT_GT(std::stoi(std::string(retry->second.data(), retry->second.size())), 0);
+  EXPECT_TRUE(submit(request("first")).ok());  // the one that is there already is no new one
+}
+
+TEST_F(SubmitTest, ValidateOnlyChecksAndMakesNoJob) {
+  auto checked = request();
+  checked.set_validate_only(true);
+  v1::SubmitJobResponse response;
+  ASSERT_TRUE(submit(checked, &response).ok());
+  EXPECT_FALSE(response.has_job());
+  EXPECT_GE(response.checks_size(), 3);
+  grpc::ClientContext context;
+  v1::ListJobsResponse jobs;
+  ASSERT_TRUE(jobs_->ListJobs(&context, {}, &jobs).ok());
+  EXPECT_EQ(jobs.jobs_size(), 0);
+  checked.mutable_spec()->set_priority(1000);
+  EXPECT_EQ(submit(checked).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+}
+
+}  // namespace
+}  // namespace skinframe::server

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/app/options.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "server/app/listen_address.h"
+
+namespace skinframe::server {
+namespace {
+
+std::variant<ServerOptions, EarlyEnd> parse(std::vector<const char*> arguments) {
+  arguments.insert(arguments.begin(), "skinframe-server");
+  return parse_command_line(static_cast<int>(arguments.size()), arguments.data());
+}
+
+absl::Status validate(const std::vector<const char*>& arguments) {
+  const auto parsed = parse(arguments);
+  const auto* options = std::get_if<ServerOptions>(&parsed);
+  return options == nullptr ? absl::UnknownError(std::get<EarlyEnd>(parsed).text) : options->validate();
+}
+
+void expect_refused(const std::vector<const char*>& arguments, const std::string& names) {
+  const absl::Status status = validate(arguments);
+  EXPECT_FALSE(status.ok());
+  EXPECT_NE(status.message().find(names), absl::string_view::npos) << status;
+}
+
+TEST(Options, DefaultsListenOnLoopback) {
+  const auto parsed = parse({"--data", "d"});
+  const auto& options = std::get<ServerOptions>(parsed);
+  EXPECT_EQ(options.listen, "127.0.0.1:7350");
+  EXPECT_TRUE(options.validate().ok());
+}
+
+TEST(Options, SecondsBecomeMilliseconds) {
+  const auto parsed = parse({"--data", "d", "--lease-seconds", "2.5", "--heartbeat-seconds", "0.25"});
+  const auto& options = std::get<ServerOptions>(parsed);
+  EXPECT_EQ(options.policy.lease, Milliseconds(2500));
+  EXPECT_EQ(options.policy.heartbeat, Milliseconds(250));
+}
+
+TEST(Options, TheNetworkNeedsTlsOrAnExplicitFlag) {
+  expect_refused({"--data", "d", "--listen", "0.0.0.0:7350"}, "--allow-plaintext");
+  expect_refused({"--data", "d", "--listen", "[::]:7350"}, "--allow-plaintext");
+  expect_refused({"--data", "d", "--listen", "farm.example:7350"}, "--allow-plaintext");
+  EXPECT_TRUE(validate({"--data", "d", "--listen", "0.0.0.0:7350", "--allow-plaintext"}).ok());
+  EXPECT_TRUE(validate({"--data", "d", "--listen", "0.0.0.0:7350", "--tls-cert", "c", "--tls-key", "k"}).ok());
+}
+
+TEST(Options, WhatIsWrongIsNamed) {
+  expect_refused({}, "--data");
+  expect_refused({"--data", "d", "--store", "postgresql://farm"}, "postgresql");
+  expect_refused({"--data", "d", "--store", "oracle"}, "oracle");
+  expect_refused({"--data", "d", "--tls-cert", "c"}, "--tls-key");
+  expect_refused({"--data", "d", "--listen", "7350"}, "--listen");
+  expect_refused({"--data", "d", "--listen", "127.0.0.1:70000"}, "--listen");
+  expect_refused({"--data", "d", "--queue-limit", "0"}, "--queue-limit");
+  expect_refused({"--data", "d", "--max-attempts", "0"}, "--max-attempts");
+  expect_refused({"--data", "d", "--lease-seconds", "0"}, "--lease-seconds");
+  expect_refused({"--data", "d", "--heartbeat-seconds", "9"}, "--heartbeat-seconds");
+}
+
+TEST(Options, HelpAndVersionEndWithZeroUnknownFlagsWithTwo) {
+  const auto help = parse({"--help"});
+  EXPECT_EQ(std::get<EarlyEnd>(help).exit_code, 0);
+  EXPECT_NE(std::get<EarlyEnd>(help).text.find("Examples:"), std::string::npos);
+  EXPECT_EQ(std::get<EarlyEnd>(parse({"--version"})).exit_code, 0);
+  EXPECT_EQ(std::get<EarlyEnd>(parse({"--config", "f"})).exit_code, 2);
+  EXPECT_EQ(std::get<EarlyEnd>(parse({"--lease-seconds", "soon"})).exit_code, 2);
+}
+
+TEST(ListenAddress, LoopbackIsRecognisedInAllItsForms) {
+  for (const char* address : {"127.0.0.1:1", "127.9.9.9:1", "localhost:1", "[::1]:1"}) EXPECT_TRUE(is_loopback(address));
+  for (const char* address : {"128.0.0.1:1", "0.0.0.0:1", "[::]:1", "127.0.0.1.example:1", "local:1"}) {
+    EXPECT_FALSE(is_loopback(address)) << address;
+  }
+}
+
+TEST(ListenAddress, TheBoundPortReplacesTheAskedOne) {
+  EXPECT_EQ(with_port("127.0.0.1:0", 4711), "127.0.0.1:4711");
+  EXPECT_EQ(with_port("[::1]:0", 4711), "[::1]:4711");
+}
+
+}  // namespace
+}  // namespace skinframe::server
