@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "worker/mesh/read_mesh.h"
 #include "worker/solid/place.h"
 #include "worker/solid/repair.h"
@@ -12,6 +14,7 @@ namespace {
 
 // Bodies outside these bounds are mistakes of unit: nothing in a tray is larger, nothing smaller has an inside.
 constexpr double kMinEdgeMm = 1.0, kMaxEdgeMm = 2000.0;
+constexpr double kPlateToleranceMm = 1e-3;  // absolute: rounding to float of a body of that size
 
 }  // namespace
 
@@ -28,16 +31,21 @@ Result<PreparedSolid> prepare_solid(const JobRequest& request, RunContext& conte
     return invalid_input(fmt::format(
         "the largest edge of the bounding box is {:g} mm, outside {:g} .. {:g} mm; state the size wanted with --size",
         edge, kMinEdgeMm, kMaxEdgeMm));
-  mesh = turn_up(std::move(mesh), request.options.up);
+  // Placed first: a solid's coordinates are floats, and moving it afterwards would round them a second time.
+  mesh = put_on_plate(turn_up(std::move(mesh), request.options.up));
   auto repaired = repair(std::move(mesh), RepairOptions{}, context);
   if (!repaired) return repaired.error();
-  auto solid = Solid::make(put_on_plate(repaired->solid.mesh()));
-  if (!solid) return solid.error();
-  Contact contact = find_contact(*solid);
+  Solid solid = std::move(repaired.value().solid);
+  if (std::abs(solid.box().min.z()) > kPlateToleranceMm) {  // repair dropped what stood on the plate
+    auto again = Solid::make(put_on_plate(solid.mesh()));
+    if (!again) return again.error();
+    solid = std::move(again).value();
+  }
+  Contact contact = find_contact(solid);
   MeshFacts facts{request.mesh_name, file->format, std::move(repaired.value().repairs),
                   std::move(repaired.value().warnings)};
   facts.repairs.insert(facts.repairs.begin(), file->notes.begin(), file->notes.end());
-  return PreparedSolid{std::move(solid).value(), std::move(contact), std::move(facts)};
+  return PreparedSolid{std::move(solid), std::move(contact), std::move(facts)};
 }
 
 }  // namespace skinframe
