@@ -92,7 +92,8 @@ struct EquilibriumSolver::Impl {
     for (std::size_t j = 0; j < slots.size(); ++j)
       for (int c = 0; c < 6; ++c)
         for (int r = 0; r < 6; ++r) {
-          const int row = unknown_of(problem.frame.struts[j], r), column = unknown_of(problem.frame.struts[j], c);
+          const int row = unknown_of(problem.frame.struts[j], r),
+                    column = unknown_of(problem.frame.struts[j], c);
           slots[j][6 * c + r] = column >= 0 && row >= column ? slot(row, column) : -1;
         }
   }
@@ -106,7 +107,8 @@ struct EquilibriumSolver::Impl {
   void assemble(const std::vector<double>& areas_mm2) {
     std::fill_n(stiffness.valuePtr(), stiffness.nonZeros(), 0.0);
     for (std::size_t j = 0; j < slots.size(); ++j) {
-      const Matrix3d b = areas_mm2[j] * strut_stiffness(springs, strut_vector(problem.frame, static_cast<int>(j)));
+      const Matrix3d b =
+          areas_mm2[j] * strut_stiffness(springs, strut_vector(problem.frame, static_cast<int>(j)));
       for (int c = 0; c < 6; ++c)
         for (int r = 0; r < 6; ++r)
           if (const int at = slots[j][6 * c + r]; at >= 0)
@@ -153,13 +155,15 @@ struct EquilibriumSolver::Impl {
     for (std::size_t i = 0; i < unknown.size(); ++i) {
       for (int axis = 0; axis < 3; ++axis)
         if (unknown[i][axis] >= 0) response.displacements_mm[i][axis] = d[unknown[i][axis]];
-      response.max_displacement_mm = std::max(response.max_displacement_mm, response.displacements_mm[i].norm());
+      response.max_displacement_mm =
+          std::max(response.max_displacement_mm, response.displacements_mm[i].norm());
     }
     add_strut_forces(areas_mm2, loads, response);
     return response;
   }
 
-  void add_strut_forces(const std::vector<double>& areas_mm2, const NodeVectors& loads, CaseResponse& response) const {
+  void add_strut_forces(const std::vector<double>& areas_mm2, const NodeVectors& loads,
+                        CaseResponse& response) const {
     NodeVectors balance = loads;  // load - internal force: minus the reaction
     const std::size_t struts = problem.frame.struts.size();
     response.axial_stress_mpa.resize(struts);
@@ -192,7 +196,8 @@ std::vector<CaseResponse> EquilibriumSolver::solve(const std::vector<double>& ar
   return solve(areas_mm2, all);
 }
 
-std::vector<CaseResponse> EquilibriumSolver::solve(const std::vector<double>& areas_mm2, const std::vector<int>& cases) {
+std::vector<CaseResponse> EquilibriumSolver::solve(const std::vector<double>& areas_mm2,
+                                                   const std::vector<int>& cases) {
   SKINFRAME_CHECK(areas_mm2.size() == impl_->problem.frame.struts.size());
   impl_->assemble(areas_mm2);
   const bool factorised = impl_->unknowns == 0 || impl_->factorise();
@@ -202,13 +207,15 @@ std::vector<CaseResponse> EquilibriumSolver::solve(const std::vector<double>& ar
   return responses;
 }
 
-std::vector<CaseResponse> solve_equilibrium(const FrameProblem& problem, const std::vector<double>& areas_mm2) {
+std::vector<CaseResponse> solve_equilibrium(const FrameProblem& problem,
+                                            const std::vector<double>& areas_mm2) {
   return EquilibriumSolver(problem).solve(areas_mm2);
 }
 
 std::vector<double> areas_of(const std::vector<double>& radii_mm) {
   std::vector<double> areas(radii_mm.size());
-  std::transform(radii_mm.begin(), radii_mm.end(), areas.begin(), [](double r) { return std::numbers::pi * r * r; });
+  std::transform(radii_mm.begin(), radii_mm.end(), areas.begin(),
+                 [](double r) { return std::numbers::pi * r * r; });
   return areas;
 }
 

@@ -23,8 +23,8 @@ void add_response(const FrameProblem& problem, const std::vector<double>& radii_
       evaluation.worst_load_case = load_case;
     }
   }
-  const auto worst = [&](const std::vector<double>& stress, const std::optional<double>& strength, double& ratio,
-                         int& strut) {
+  const auto worst = [&](const std::vector<double>& stress, const std::optional<double>& strength,
+                         double& ratio, int& strut) {
     if (!strength) return;
     for (std::size_t j = 0; j < stress.size(); ++j) {
       if (radii_mm[j] < kVanishedRadiusMm) continue;
@@ -75,8 +75,9 @@ void add_balance(const FrameProblem& problem, const std::vector<double>& radii_m
   if (weight > 0) evaluation.centre_of_gravity_mm = moment / weight;
   evaluation.balance_margin_mm = std::numeric_limits<double>::infinity();
   for (const HalfPlane& edge : problem.balance)
-    evaluation.balance_margin_mm = std::min(
-        evaluation.balance_margin_mm, edge.offset_mm - edge.normal.dot(evaluation.centre_of_gravity_mm.head<2>()));
+    evaluation.balance_margin_mm =
+        std::min(evaluation.balance_margin_mm,
+                 edge.offset_mm - edge.normal.dot(evaluation.centre_of_gravity_mm.head<2>()));
 }
 
 }  // namespace

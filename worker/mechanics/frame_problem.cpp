@@ -25,12 +25,14 @@ Status sizes_agree(const FrameProblem& p) {
   if (p.fixed.size() != nodes)
     return invalid_input(fmt::format("fixed: {} entries for {} nodes", p.fixed.size(), nodes));
   if (!p.skin_weight_n.empty() && p.skin_weight_n.size() != nodes)
-    return invalid_input(fmt::format("skin_weight_n: {} entries for {} nodes", p.skin_weight_n.size(), nodes));
+    return invalid_input(
+        fmt::format("skin_weight_n: {} entries for {} nodes", p.skin_weight_n.size(), nodes));
   if (!p.free_nodes.empty() && p.free_nodes.size() != nodes)
     return invalid_input(fmt::format("free_nodes: {} entries for {} nodes", p.free_nodes.size(), nodes));
   for (std::size_t k = 0; k < p.load_cases.size(); ++k)
     if (p.load_cases[k].force_n.size() != nodes)
-      return invalid_input(fmt::format("load_cases[{}]: {} forces for {} nodes", k, p.load_cases[k].force_n.size(), nodes));
+      return invalid_input(
+          fmt::format("load_cases[{}]: {} forces for {} nodes", k, p.load_cases[k].force_n.size(), nodes));
   return ok_status();
 }
 
@@ -66,14 +68,15 @@ Status struts_hold(const FrameProblem& p) {
       return invalid_input(fmt::format("struts[{}]: its ends {} and {} coincide", j, strut.a, strut.b));
     const RadiusBounds& b = p.bounds[j];
     if (!finite(b.min_mm) || !finite(b.max_mm) || b.min_mm < 0 || b.max_mm <= 0 || b.min_mm > b.max_mm)
-      return invalid_input(fmt::format("struts[{}]: radius bounds {}..{} mm are no interval of positive length",
-                                       j, b.min_mm, b.max_mm));
+      return invalid_input(fmt::format(
+          "struts[{}]: radius bounds {}..{} mm are no interval of positive length", j, b.min_mm, b.max_mm));
     pairs.emplace_back(std::min(strut.a, strut.b), std::max(strut.a, strut.b));
   }
   std::sort(pairs.begin(), pairs.end());
   const auto twice = std::adjacent_find(pairs.begin(), pairs.end());
   if (twice != pairs.end())
-    return invalid_input(fmt::format("struts: nodes {} and {} are joined twice", twice->first, twice->second));
+    return invalid_input(
+        fmt::format("struts: nodes {} and {} are joined twice", twice->first, twice->second));
   return ok_status();
 }
 
@@ -102,7 +105,10 @@ Status free_nodes_hold(const FrameProblem& p) {
   for (std::size_t i = 0; i < p.free_nodes.size(); ++i) {
     if (!p.free_nodes[i]) continue;
     const auto& axes = p.fixed[i];
-    const char* why = axes[0] || axes[1] || axes[2] ? "fixed" : loaded[i] ? "loaded" : of_skin[i] ? "of the skin" : nullptr;
+    const char* why = axes[0] || axes[1] || axes[2] ? "fixed"
+                      : loaded[i]                   ? "loaded"
+                      : of_skin[i]                  ? "of the skin"
+                                                    : nullptr;
     if (why) return invalid_input(fmt::format("free_nodes: node {} is {}, so it cannot move", i, why));
   }
   return ok_status();
@@ -112,8 +118,10 @@ Status free_nodes_hold(const FrameProblem& p) {
 
 const char* to_string(ElementModel model) {
   switch (model) {
-    case ElementModel::kPaper: return "paper";
-    case ElementModel::kAxial: return "axial";
+    case ElementModel::kPaper:
+      return "paper";
+    case ElementModel::kAxial:
+      return "axial";
   }
   return "unknown";
 }

@@ -3,7 +3,8 @@
 // Equation numbers are those of Wang et al. 2013. Units: mm, N, MPa, tonne; density enters in g/cm3.
 //
 // Invariants, checked by validate():
-//  1. The frame is well formed: indices in range, no strut of zero length, no two struts between the same nodes.
+//  1. The frame is well formed: indices in range, no strut of zero length, no two struts between the same
+//  nodes.
 //  2. bounds has one entry a strut, fixed and free_nodes one a node, force_n of each load case one a node;
 //     skin_weight_n one a node or none at all. free_nodes may be empty: then no node moves.
 //  3. Every number is finite; moduli are positive; 0 <= min_mm <= max_mm and 0 < max_mm; limits are positive.
@@ -51,8 +52,8 @@ struct RadiusBounds {
 
 struct LoadCase {
   std::string name;
-  bool gravity = true;                    // self weight of struts and skin acts along -z
-  std::vector<Eigen::Vector3d> force_n;   // external, one a node
+  bool gravity = true;                   // self weight of struts and skin acts along -z
+  std::vector<Eigen::Vector3d> force_n;  // external, one a node
 };
 
 // normal . (x, y) <= offset_mm, normal of unit length: one edge of the hull of the base contact, for (8).
@@ -71,14 +72,14 @@ struct FrameProblem {
   ElementModel element = ElementModel::kPaper;
   Material material;
   Frame frame;
-  std::vector<RadiusBounds> bounds;                // (9), (10), one a strut
-  std::vector<std::array<bool, 3>> fixed;          // axes held at zero, one a node
-  std::vector<double> skin_weight_n;               // lumped to the nodes, one a node or empty
+  std::vector<RadiusBounds> bounds;        // (9), (10), one a strut
+  std::vector<std::array<bool, 3>> fixed;  // axes held at zero, one a node
+  std::vector<double> skin_weight_n;       // lumped to the nodes, one a node or empty
   std::vector<LoadCase> load_cases;
-  std::optional<double> displacement_limit_mm;     // epsilon of (6)
-  std::vector<HalfPlane> balance;                  // (8); empty: not asked for
+  std::optional<double> displacement_limit_mm;  // epsilon of (6)
+  std::vector<HalfPlane> balance;               // (8); empty: not asked for
   FixedMass skin_mass;
-  std::vector<bool> free_nodes;                    // may move in geometry optimisation, one a node or empty
+  std::vector<bool> free_nodes;  // may move in geometry optimisation, one a node or empty
 };
 
 // Ok, or the first invariant that does not hold, naming the element.

@@ -54,8 +54,8 @@ StrutHessian strut_work_hessian(const StrutSprings& springs, const StrutState& q
                         3 * k5 * (q.e * v.transpose() + v * q.e.transpose()) +
                         k3 * (q.delta * q.eta.transpose() + q.eta * q.delta.transpose()) +
                         springs.half_weight * q.s * (identity / l - ee / (l2 * l));
-  h.block<3, 3>(0, 3) = -m3 * q.e * q.eta.transpose() - 3 * k5 * pull * ee +
-                        k3 * (pull * identity + q.eta * q.e.transpose());
+  h.block<3, 3>(0, 3) =
+      -m3 * q.e * q.eta.transpose() - 3 * k5 * pull * ee + k3 * (pull * identity + q.eta * q.e.transpose());
   h.block<3, 3>(0, 6) = -m3 * q.e * q.delta.transpose() - 3 * k5 * along * ee +
                         k3 * (along * identity + q.delta * q.e.transpose());
   h.block<3, 1>(0, 9) = springs.half_weight / l * q.e;

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The strut a -> b as the optimiser sees it: its part of the equilibrium Lagrangian, lambda^T (K D - F) = sum A_j P_j + ...
+// The strut a -> b as the optimiser sees it: its part of the equilibrium Lagrangian, lambda^T (K D - F) = sum
+// A_j P_j + ...
 //
 //   P(e, delta, eta, s) = delta^T B(e) eta + w l s,     B(e) = (mu / l) I + ((gamma - mu) / l^3) e e^T
 //
-//   e = x_b - x_a, l = |e|, delta = d_b - d_a, eta = lambda_b - lambda_a, s = lambda_az + lambda_bz, w = rho g / 2.
+//   e = x_b - x_a, l = |e|, delta = d_b - d_a, eta = lambda_b - lambda_a, s = lambda_az + lambda_bz, w = rho
+//   g / 2.
 //
-// A B is the strut's stiffness of the paper's eq. (1); w l A is half its weight. gamma, mu: tensile and shear modulus.
-// Any consistent units; the optimiser uses nondimensional ones. Guarantee: e is never zero (FrameProblem, invariant 1).
+// A B is the strut's stiffness of the paper's eq. (1); w l A is half its weight. gamma, mu: tensile and shear
+// modulus. Any consistent units; the optimiser uses nondimensional ones. Guarantee: e is never zero
+// (FrameProblem, invariant 1).
 //
 // A further element joins by its name in ElementModel and its own functions of these shapes.
 #pragma once

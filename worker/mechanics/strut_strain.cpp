@@ -24,8 +24,8 @@ StrainHessian axial_hessian(const Vector3d& e, const Vector3d& delta) {
   const Matrix3d identity = Matrix3d::Identity(), ee = e * e.transpose();
   StrainHessian h;
   h.block<3, 3>(0, 0) = 2 / l4 * delta * delta.transpose() -
-                        8 * u / l6 * (delta * e.transpose() + e * delta.transpose()) - 4 * u * u / l6 * identity +
-                        24 * u * u / (l6 * l2) * ee;
+                        8 * u / l6 * (delta * e.transpose() + e * delta.transpose()) -
+                        4 * u * u / l6 * identity + 24 * u * u / (l6 * l2) * ee;
   h.block<3, 3>(0, 3) = 2 / l4 * (delta * e.transpose() + u * identity) - 8 * u / l6 * ee;
   h.block<3, 3>(3, 0) = h.block<3, 3>(0, 3).transpose();
   h.block<3, 3>(3, 3) = 2 / l4 * ee;

@@ -13,7 +13,9 @@ class BarrierUpdate {
   BarrierUpdate(double initial, double smallest) : value_(initial), smallest_(smallest) {}
   double value() const { return value_; }
   bool solved_well(double error) const { return error <= kSolvedWell * value_ && value_ > smallest_; }
-  void decrease() { value_ = std::max(smallest_, std::min(kLinear * value_, std::pow(value_, kSuperlinear))); }
+  void decrease() {
+    value_ = std::max(smallest_, std::min(kLinear * value_, std::pow(value_, kSuperlinear)));
+  }
   // How close a step may come to the boundary: it leaves the share 1 - this of each slack.
   double fraction_to_boundary() const { return std::max(kLeastFraction, 1 - value_); }
 

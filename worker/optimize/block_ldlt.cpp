@@ -4,15 +4,15 @@
 #include <algorithm>
 
 extern "C" {
-void dsytrf_(const char* uplo, const int* n, double* a, const int* lda, int* ipiv, double* work, const int* lwork,
-             int* info);
-void dsytrs_(const char* uplo, const int* n, const int* nrhs, const double* a, const int* lda, const int* ipiv, double* b,
-             const int* ldb, int* info);
-void dsytrs2_(const char* uplo, const int* n, const int* nrhs, double* a, const int* lda, const int* ipiv, double* b,
-              const int* ldb, double* work, int* info);
-void dgemm_(const char* transa, const char* transb, const int* m, const int* n, const int* k, const double* alpha,
-            const double* a, const int* lda, const double* b, const int* ldb, const double* beta, double* c,
-            const int* ldc);
+void dsytrf_(const char* uplo, const int* n, double* a, const int* lda, int* ipiv, double* work,
+             const int* lwork, int* info);
+void dsytrs_(const char* uplo, const int* n, const int* nrhs, const double* a, const int* lda,
+             const int* ipiv, double* b, const int* ldb, int* info);
+void dsytrs2_(const char* uplo, const int* n, const int* nrhs, double* a, const int* lda, const int* ipiv,
+              double* b, const int* ldb, double* work, int* info);
+void dgemm_(const char* transa, const char* transb, const int* m, const int* n, const int* k,
+            const double* alpha, const double* a, const int* lda, const double* b, const int* ldb,
+            const double* beta, double* c, const int* ldc);
 void openblas_set_num_threads(int threads) __attribute__((weak));
 }
 
@@ -22,8 +22,8 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr int kWidthForLevel3 = 8;   // dsytrs2 pays from here on
-constexpr int kUpdateColumns = 96;   // the symmetric update is done in column strips, lower part only
+constexpr int kWidthForLevel3 = 8;  // dsytrs2 pays from here on
+constexpr int kUpdateColumns = 96;  // the symmetric update is done in column strips, lower part only
 
 // dense(row.., column..) += block in the lower triangle of the front.
 template <class Block>
@@ -41,7 +41,9 @@ void use_one_blas_thread() {
 }
 
 BlockLdlt::BlockLdlt(std::vector<int> block_rows, std::vector<std::pair<int, int>> edges)
-    : block_rows_(std::move(block_rows)), edges_(std::move(edges)), order_(order_blocks(block_rows_, edges_)) {
+    : block_rows_(std::move(block_rows)),
+      edges_(std::move(edges)),
+      order_(order_blocks(block_rows_, edges_)) {
   first_row_.resize(block_rows_.size());
   for (int block : order_.block_at) {
     first_row_[block] = rows_;
@@ -75,7 +77,8 @@ BlockLdlt::Block BlockLdlt::node_block(int node) {
 }
 
 BlockLdlt::Block BlockLdlt::edge_block(int edge) {
-  return {edge_values_.data() + edge_start_[edge], block_rows_[edges_[edge].first], block_rows_[edges_[edge].second]};
+  return {edge_values_.data() + edge_start_[edge], block_rows_[edges_[edge].first],
+          block_rows_[edges_[edge].second]};
 }
 
 void BlockLdlt::assemble_front(const Front& front, std::vector<MatrixXd>& updates, MatrixXd& dense) const {
@@ -149,7 +152,8 @@ bool BlockLdlt::factorise() {
 
     factor.coupling = dense.bottomLeftCorner(u, k).transpose();
     if (k > kWidthForLevel3)
-      dsytrs2_("L", &k, &u, factor.pivot.data(), &k, factor.swaps.data(), factor.coupling.data(), &k, work.data(), &info);
+      dsytrs2_("L", &k, &u, factor.pivot.data(), &k, factor.swaps.data(), factor.coupling.data(), &k,
+               work.data(), &info);
     else
       dsytrs_("L", &k, &u, factor.pivot.data(), &k, factor.swaps.data(), factor.coupling.data(), &k, &info);
     if (info != 0) return false;
@@ -157,8 +161,8 @@ bool BlockLdlt::factorise() {
     update = dense.bottomRightCorner(u, u);
     for (int column = 0; column < u; column += kUpdateColumns) {
       const int columns = std::min(kUpdateColumns, u - column), rows = u - column;
-      dgemm_("N", "N", &rows, &columns, &k, &minus_one, &dense(k + column, 0), &size, &factor.coupling(0, column), &k, &one,
-             &update(column, column), &u);
+      dgemm_("N", "N", &rows, &columns, &k, &minus_one, &dense(k + column, 0), &size,
+             &factor.coupling(0, column), &k, &one, &update(column, column), &u);
     }
   }
   return inertia_.zero == 0;
@@ -185,7 +189,8 @@ void BlockLdlt::solve_in_place(Eigen::Ref<MatrixXd> b) const {
       for_updates(front, [&](auto block, int row, int rows) { block -= update_part.middleRows(row, rows); });
     }
     int info = 0;
-    dsytrs_("L", &k, &columns, factors_[f].pivot.data(), &k, factors_[f].swaps.data(), pivot_part.data(), &k, &info);
+    dsytrs_("L", &k, &columns, factors_[f].pivot.data(), &k, factors_[f].swaps.data(), pivot_part.data(), &k,
+            &info);
     b.middleRows(first, k) = pivot_part;
   }
   for (std::size_t f = order_.fronts.size(); f-- > 0;) {
@@ -203,7 +208,8 @@ VectorXd BlockLdlt::multiply(const VectorXd& x) const {
   VectorXd y = VectorXd::Zero(rows_);
   for (std::size_t i = 0; i < block_rows_.size(); ++i) {
     const int row = first_row_[i], rows = block_rows_[i];
-    y.segment(row, rows) += ConstBlock(node_values_.data() + node_start_[i], rows, rows) * x.segment(row, rows);
+    y.segment(row, rows) +=
+        ConstBlock(node_values_.data() + node_start_[i], rows, rows) * x.segment(row, rows);
   }
   for (std::size_t e = 0; e < edges_.size(); ++e) {
     const auto [a, b] = edges_[e];

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Multifrontal L D L^T of a symmetric indefinite matrix made of dense blocks on a graph: one block a node, one an edge.
-// Within a front all pivots stand in one dense block, factorised by LAPACK's dsytrf (Bunch and Kaufman 1977), so that the
-// displacements and multipliers of a node, coupled as [0 K; K 0], pivot with one another. No pivot is delayed to a later
-// front: the caller refines iteratively and regularises where the inertia is wrong.
+// Multifrontal L D L^T of a symmetric indefinite matrix made of dense blocks on a graph: one block a node,
+// one an edge. Within a front all pivots stand in one dense block, factorised by LAPACK's dsytrf (Bunch and
+// Kaufman 1977), so that the displacements and multipliers of a node, coupled as [0 K; K 0], pivot with one
+// another. No pivot is delayed to a later front: the caller refines iteratively and regularises where the
+// inertia is wrong.
 //
 // Deterministic when BLAS runs on one thread: use_one_blas_thread().
 #pragma once
@@ -31,7 +32,8 @@ class BlockLdlt {
   int rows() const { return rows_; }
   int first_row(int node) const { return first_row_[node]; }  // of the node in vectors
 
-  // The values: all of the symmetric diagonal block, and for edge (a, b) the block with a's rows and b's columns.
+  // The values: all of the symmetric diagonal block, and for edge (a, b) the block with a's rows and b's
+  // columns.
   void set_zero();
   Block node_block(int node);
   Block edge_block(int edge);
@@ -45,11 +47,12 @@ class BlockLdlt {
 
  private:
   struct Factor {
-    Eigen::MatrixXd pivot;        // dsytrf's L and D
-    std::vector<int> swaps;       // dsytrf's ipiv
-    Eigen::MatrixXd coupling;     // pivot block^-1 times the coupling to the update rows
+    Eigen::MatrixXd pivot;     // dsytrf's L and D
+    std::vector<int> swaps;    // dsytrf's ipiv
+    Eigen::MatrixXd coupling;  // pivot block^-1 times the coupling to the update rows
   };
-  void assemble_front(const Front& front, std::vector<Eigen::MatrixXd>& updates, Eigen::MatrixXd& dense) const;
+  void assemble_front(const Front& front, std::vector<Eigen::MatrixXd>& updates,
+                      Eigen::MatrixXd& dense) const;
   void count_inertia(const Factor& factor);
 
   std::vector<int> block_rows_;

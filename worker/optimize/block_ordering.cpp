@@ -45,7 +45,8 @@ std::vector<int> nested_dissection(const Lists& neighbours) {
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = 1;
   idx_t count = static_cast<idx_t>(blocks);
-  const int status = METIS_NodeND(&count, start.data(), list.data(), nullptr, options, order.data(), inverse.data());
+  const int status =
+      METIS_NodeND(&count, start.data(), list.data(), nullptr, options, order.data(), inverse.data());
   if (status == METIS_OK) block_at.assign(order.begin(), order.end());
   return block_at;  // any order is correct; this one is merely slow
 }
@@ -53,7 +54,7 @@ std::vector<int> nested_dissection(const Lists& neighbours) {
 struct EliminationTree {
   std::vector<int> parent;  // position, -1 for a root
   Lists children;
-  Lists structure;          // later positions each position touches, ascending
+  Lists structure;  // later positions each position touches, ascending
 };
 
 EliminationTree eliminate(const Lists& neighbours, const BlockOrdering& order) {
@@ -103,7 +104,8 @@ std::vector<int> postorder(const EliminationTree& tree) {
 void set_order(BlockOrdering& order, std::vector<int> block_at) {
   order.block_at = std::move(block_at);
   order.position.resize(order.block_at.size());
-  for (std::size_t k = 0; k < order.block_at.size(); ++k) order.position[order.block_at[k]] = static_cast<int>(k);
+  for (std::size_t k = 0; k < order.block_at.size(); ++k)
+    order.position[order.block_at[k]] = static_cast<int>(k);
 }
 
 // Positions [begin, end) eliminated together.
@@ -116,7 +118,8 @@ struct Supernode {
 std::vector<Supernode> fundamental_supernodes(const EliminationTree& tree, const std::vector<long>& rows_at) {
   std::vector<Supernode> nodes;
   for (int k = 0; k < static_cast<int>(tree.parent.size()); ++k) {
-    const bool extends = k > 0 && tree.parent[k - 1] == k && tree.structure[k - 1].size() == tree.structure[k].size() + 1;
+    const bool extends =
+        k > 0 && tree.parent[k - 1] == k && tree.structure[k - 1].size() == tree.structure[k].size() + 1;
     if (!extends) nodes.push_back({k, k, 0, 0, 0, nullptr});
     nodes.back().end = k + 1;
     nodes.back().rows += rows_at[k];
@@ -128,7 +131,8 @@ std::vector<Supernode> fundamental_supernodes(const EliminationTree& tree, const
 }
 
 bool worth_merging(const Supernode& child, const Supernode& parent, long& zeros) {
-  if (child.end != parent.begin || child.updates->empty() || child.updates->front() != parent.begin) return false;
+  if (child.end != parent.begin || child.updates->empty() || child.updates->front() != parent.begin)
+    return false;
   zeros = child.rows * (parent.rows + parent.update_rows - child.update_rows) + child.zeros + parent.zeros;
   const double stored = static_cast<double>(child.rows + parent.rows) *
                         static_cast<double>(child.rows + parent.rows + parent.update_rows);
@@ -198,7 +202,8 @@ int front_row(const Front& front, int position) {
   return front.first_row[front.pivots.size() + static_cast<std::size_t>(at - front.updates.begin())];
 }
 
-BlockOrdering order_blocks(const std::vector<int>& block_rows, const std::vector<std::pair<int, int>>& edges) {
+BlockOrdering order_blocks(const std::vector<int>& block_rows,
+                           const std::vector<std::pair<int, int>>& edges) {
   const int blocks = static_cast<int>(block_rows.size());
   const Lists neighbours = adjacency(blocks, edges);
   BlockOrdering order;

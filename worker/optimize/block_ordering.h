@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The order of elimination of a symmetric block matrix on a graph, and the fronts of its multifrontal factorisation.
-// Nested dissection (METIS, fixed seed) on the graph of blocks, elimination tree in postorder, fundamental supernodes
-// merged where that adds few zeros (Duff and Reid 1983; Liu 1992).
+// The order of elimination of a symmetric block matrix on a graph, and the fronts of its multifrontal
+// factorisation. Nested dissection (METIS, fixed seed) on the graph of blocks, elimination tree in postorder,
+// fundamental supernodes merged where that adds few zeros (Duff and Reid 1983; Liu 1992).
 //
 // "Position" is a block's place in the order of elimination; "row" counts scalars.
 #pragma once
@@ -12,20 +12,20 @@
 namespace skinframe {
 
 struct Front {
-  std::vector<int> pivots;        // positions eliminated here: consecutive, ascending
-  std::vector<int> updates;       // later positions this front touches, ascending
-  std::vector<int> children;      // fronts whose update matrix adds into this one
+  std::vector<int> pivots;    // positions eliminated here: consecutive, ascending
+  std::vector<int> updates;   // later positions this front touches, ascending
+  std::vector<int> children;  // fronts whose update matrix adds into this one
   int parent = -1;
   int pivot_rows = 0;
   int update_rows = 0;
-  std::vector<int> first_row;     // in the front, of each pivot and then each update
-  std::vector<int> parent_row;    // where each update row goes in the parent's front; ascending
+  std::vector<int> first_row;   // in the front, of each pivot and then each update
+  std::vector<int> parent_row;  // where each update row goes in the parent's front; ascending
 };
 
 struct BlockOrdering {
-  std::vector<int> block_at;   // block at each position
-  std::vector<int> position;   // position of each block
-  std::vector<Front> fronts;   // children before parents
+  std::vector<int> block_at;  // block at each position
+  std::vector<int> position;  // position of each block
+  std::vector<Front> fronts;  // children before parents
 };
 
 // Edges join different blocks; an edge may stand more than once.

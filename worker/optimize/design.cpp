@@ -71,7 +71,11 @@ void drop_dangling(const Frame& frame, const std::vector<bool>& anchored, std::v
 }  // namespace
 
 Design initial_design(const FrameProblem& problem) {
-  Design design{problem, {}, 0, std::vector<int>(problem.frame.nodes_mm.size()), std::vector<int>(problem.frame.struts.size())};
+  Design design{problem,
+                {},
+                0,
+                std::vector<int>(problem.frame.nodes_mm.size()),
+                std::vector<int>(problem.frame.struts.size())};
   std::iota(design.node_origin.begin(), design.node_origin.end(), 0);
   std::iota(design.strut_origin.begin(), design.strut_origin.end(), 0);
   return design;

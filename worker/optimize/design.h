@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A frame on its way through Algorithm 1: a problem whose struts and nodes grow fewer, with feasible areas and the way back
-// to the input's indices. And how struts are taken out of it.
+// A frame on its way through Algorithm 1: a problem whose struts and nodes grow fewer, with feasible areas
+// and the way back to the input's indices. And how struts are taken out of it.
 #pragma once
 
 #include <vector>
@@ -19,9 +19,10 @@ struct Design {
 // The problem as given, without areas.
 Design initial_design(const FrameProblem& problem);
 
-// The design with the struts of `keep`, and of those only what serves: components without a fixed node that neither belong
-// to the skin nor carry a load go, and so do internal nodes that end up with a single strut, with that strut (it carries
-// nothing). Areas are carried over; volume_mm3 is left at 0, since nothing has been sized.
+// The design with the struts of `keep`, and of those only what serves: components without a fixed node that
+// neither belong to the skin nor carry a load go, and so do internal nodes that end up with a single strut,
+// with that strut (it carries nothing). Areas are carried over; volume_mm3 is left at 0, since nothing has
+// been sized.
 Design reduced_design(const Design& design, std::vector<bool> keep);
 
 // Struts that topology optimisation may remove: internal ones, and those whose lower bound is zero.

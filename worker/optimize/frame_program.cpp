@@ -29,7 +29,9 @@ void clear_fixed(const FrameProgram& p, NodeMatrix& vectors) {
 // t where this family of inequalities is relaxed by it.
 bool relaxes(const FrameProgram& p, ElasticScope scope) { return p.elastic == scope; }
 
-double moment_arm(const BalanceRow& row, const Vector3d& middle) { return row.normal.dot(middle) - row.offset; }
+double moment_arm(const BalanceRow& row, const Vector3d& middle) {
+  return row.normal.dot(middle) - row.offset;
+}
 
 }  // namespace
 
@@ -123,16 +125,19 @@ VectorXd inequalities(const FrameProgram& p, const InequalityLayout& at, const P
   for (std::size_t g = 0; g < at.geometry_struts.size(); ++g) {
     const int j = at.geometry_struts[g];
     const double l2 = strut_vector(p, v.positions, j).squaredNorm();
-    if (p.slenderness_area > 0 && !p.area_is_given(j)) c[at.slenderness + g] = p.slenderness_area * l2 - v.areas[j];
+    if (p.slenderness_area > 0 && !p.area_is_given(j))
+      c[at.slenderness + g] = p.slenderness_area * l2 - v.areas[j];
     if (p.squared_min_length.size() > 0) c[at.length + g] = p.squared_min_length[j] - l2;
   }
   for (std::size_t h = 0; h < p.half_spaces.size(); ++h)
-    c[at.half_space + h] = p.half_spaces[h].normal.dot(v.positions.col(p.half_spaces[h].node)) - p.half_spaces[h].offset;
+    c[at.half_space + h] =
+        p.half_spaces[h].normal.dot(v.positions.col(p.half_spaces[h].node)) - p.half_spaces[h].offset;
   int row = at.rows;
   for (const BalanceRow& balance : p.balance) {
     double moment = balance.skin_moment;
     for (int j = 0; j < m; ++j)
-      moment += v.areas[j] * strut_vector(p, v.positions, j).norm() * moment_arm(balance, middle_of(p, v.positions, j));
+      moment += v.areas[j] * strut_vector(p, v.positions, j).norm() *
+                moment_arm(balance, middle_of(p, v.positions, j));
     c[row++] = balance.scale * moment - (relaxes(p, ElasticScope::kBalance) ? v.elastic : 0.0);
   }
   if (p.volume_cap) c[row] = p.cap_scale * (program_volume(p, v) / *p.volume_cap - 1);
@@ -238,7 +243,8 @@ VectorXd inequality_slopes(const FrameProgram& p, const InequalityLayout& at, co
     if (p.squared_displacement_limit)
       for (int i = 0; i < n; ++i)
         slopes[at.displacement_at(k, i, n)] =
-            2 * v.displacements[k].col(i).dot(d.displacements[k].col(i)) / *p.squared_displacement_limit - relaxed;
+            2 * v.displacements[k].col(i).dot(d.displacements[k].col(i)) / *p.squared_displacement_limit -
+            relaxed;
     for (int s = 0; s < at.strain_count; ++s) {
       const StrainLimit& limit = p.strain_limits[s];
       const StrutState q = state_of(p, v, limit.strut, k), dq = state_of(p, d, limit.strut, k);

@@ -3,9 +3,10 @@
 //
 //   minimise    volume_weight sum A_j l_j  +  sum area_weights_j A_j  +  elastic_weight t
 //   over        areas A, positions x of the nodes that move, displacements D of each load case, and t
-//   subject to  K(x) A D = F(A, x) for each case                                   (1)    equalities, multipliers lambda
-//               lower <= A <= upper                                                (9,10) and (4,5) where nothing moves
-//               |d_i|^2 <= limit^2 [or t]      each node, each case                (6)
+//   subject to  K(x) A D = F(A, x) for each case                                   (1)    equalities,
+//   multipliers lambda
+//               lower <= A <= upper                                                (9,10) and (4,5) where
+//               nothing moves |d_i|^2 <= limit^2 [or t]      each node, each case                (6)
 //               strain_j^2 <= limit^2 [or t]   each strut listed, each case        (2,3)
 //               kappa l_j^2 <= A_j             each strut with a moving end        (4,5)
 //               l_j^2 >= min_length_j^2        the same
@@ -13,8 +14,9 @@
 //               moment about each edge of the base hull <= 0 [or t]                (8)    dense rows
 //               sum A_j l_j <= cap                                                 (20)   dense row
 //
-// Inequalities are written c <= 0 and stand in one flat vector; Layout says where. All but the dense rows couple only the
-// ends of a strut or the axes of a node. With A as the variable everything is linear in A, and only (1) is bilinear.
+// Inequalities are written c <= 0 and stand in one flat vector; Layout says where. All but the dense rows
+// couple only the ends of a strut or the axes of a node. With A as the variable everything is linear in A,
+// and only (1) is bilinear.
 #pragma once
 
 #include <Eigen/Core>
@@ -33,7 +35,7 @@ using NodeMatrix = Eigen::Matrix3Xd;  // one column a node
 // A point of the program, a direction in it, or a gradient with respect to it. Multipliers ride along.
 struct ProgramVector {
   Eigen::VectorXd areas;
-  NodeMatrix positions;                   // of all nodes; directions and gradients are zero where a node does not move
+  NodeMatrix positions;  // of all nodes; directions and gradients are zero where a node does not move
   std::vector<NodeMatrix> displacements;  // one a load case; zero at fixed axes
   std::vector<NodeMatrix> multipliers;    // the same
   double elastic = 0;                     // t
@@ -72,9 +74,9 @@ struct FrameProgram {
   std::vector<bool> moves;                 // one a node
   StrutSprings springs;
   std::vector<ProgramCase> cases;
-  Eigen::VectorXd lower, upper;            // equal: the area is given and does not change
+  Eigen::VectorXd lower, upper;  // equal: the area is given and does not change
   double volume_weight = 1;
-  Eigen::VectorXd area_weights;            // empty: none
+  Eigen::VectorXd area_weights;  // empty: none
   double elastic_weight = 0;
   ElasticScope elastic = ElasticScope::kNone;
   std::optional<double> squared_displacement_limit;
@@ -84,7 +86,7 @@ struct FrameProgram {
   std::vector<NodeHalfSpace> half_spaces;
   std::vector<BalanceRow> balance;
   std::optional<double> volume_cap;
-  double cap_scale = 100;                  // the row reads cap_scale (V / cap - 1) <= 0
+  double cap_scale = 100;  // the row reads cap_scale (V / cap - 1) <= 0
 
   int node_count() const { return static_cast<int>(fixed.size()); }
   int strut_count() const { return static_cast<int>(struts.size()); }
@@ -96,12 +98,15 @@ struct FrameProgram {
 // Where each family of inequalities stands in the flat vector.
 struct InequalityLayout {
   explicit InequalityLayout(const FrameProgram& program);
-  int area_lower = 0, area_upper = 0, displacement = 0, strain = 0, slenderness = 0, length = 0, half_space = 0, rows = 0;
+  int area_lower = 0, area_upper = 0, displacement = 0, strain = 0, slenderness = 0, length = 0,
+      half_space = 0, rows = 0;
   int count = 0;
-  int row_count = 0;                   // the dense rows: balance, then the cap
-  int strain_count = 0;                // strain limits of one case
-  std::vector<int> geometry_struts;    // struts with a moving end: the order of `slenderness` and `length`
-  int displacement_at(int load_case, int node, int nodes) const { return displacement + load_case * nodes + node; }
+  int row_count = 0;                 // the dense rows: balance, then the cap
+  int strain_count = 0;              // strain limits of one case
+  std::vector<int> geometry_struts;  // struts with a moving end: the order of `slenderness` and `length`
+  int displacement_at(int load_case, int node, int nodes) const {
+    return displacement + load_case * nodes + node;
+  }
   int strain_at(int load_case, int limit) const { return strain + load_case * strain_count + limit; }
 };
 
@@ -113,15 +118,17 @@ double objective(const FrameProgram& program, const ProgramVector& point);
 std::vector<NodeMatrix> equilibrium_residuals(const FrameProgram& program, const ProgramVector& point);
 
 // c at the point. A relation that cannot bind (a given area, a node that is fixed) reads -1.
-Eigen::VectorXd inequalities(const FrameProgram& program, const InequalityLayout& layout, const ProgramVector& point);
+Eigen::VectorXd inequalities(const FrameProgram& program, const InequalityLayout& layout,
+                             const ProgramVector& point);
 
 // The gradient of objective + lambda^T (K D - F) + weights^T c. Its multiplier part is K D - F.
-ProgramVector lagrangian_gradient(const FrameProgram& program, const InequalityLayout& layout, const ProgramVector& point,
-                                  const Eigen::VectorXd& weights);
+ProgramVector lagrangian_gradient(const FrameProgram& program, const InequalityLayout& layout,
+                                  const ProgramVector& point, const Eigen::VectorXd& weights);
 
 // The derivative of c along a direction.
-Eigen::VectorXd inequality_slopes(const FrameProgram& program, const InequalityLayout& layout, const ProgramVector& point,
-                                  const ProgramVector& direction);
-double objective_slope(const FrameProgram& program, const ProgramVector& point, const ProgramVector& direction);
+Eigen::VectorXd inequality_slopes(const FrameProgram& program, const InequalityLayout& layout,
+                                  const ProgramVector& point, const ProgramVector& direction);
+double objective_slope(const FrameProgram& program, const ProgramVector& point,
+                       const ProgramVector& direction);
 
 }  // namespace skinframe

@@ -14,7 +14,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kNearBarrier = 1e-2;
-// The moved frame is sized again: the pass itself need not be exact, nor be waited for when it does not converge.
+// The moved frame is sized again: the pass itself need not be exact, nor be waited for when it does not
+// converge.
 constexpr double kRoughly = 10;
 constexpr int kPatientIterations = 80;
 // A node this close to the edge of its region, relative to its box, does not move in this pass.
@@ -117,8 +118,8 @@ Design optimise_geometry(Design design, Session& session) {
     if (design.problem.free_nodes.empty()) break;
     NodeRegions regions = regions_of(design, options);
     if (regions.empty()) break;
-    const ProgramOutcome outcome =
-        session.solve(design.problem, geometry_request(design, std::move(regions), options), design.areas_mm2);
+    const ProgramOutcome outcome = session.solve(
+        design.problem, geometry_request(design, std::move(regions), options), design.areas_mm2);
     if (outcome.end == InteriorPointEnd::kCancelled) break;
     const double before = design.volume_mm3;
     auto moved = settle(design, outcome, session);

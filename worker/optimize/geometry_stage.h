@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// GeoOpt (21): where the internal nodes stand. Areas, positions, displacements and multipliers move together in one interior
-// point; each node stays in its convex region (7) and in a box about its present place, struts stay slender enough and no
-// shorter than a least length. Passes re-centre the regions; each is re-sized, and kept only when the volume falls and the
-// caller accepts the moved frame.
+// GeoOpt (21): where the internal nodes stand. Areas, positions, displacements and multipliers move together
+// in one interior point; each node stays in its convex region (7) and in a box about its present place,
+// struts stay slender enough and no shorter than a least length. Passes re-centre the regions; each is
+// re-sized, and kept only when the volume falls and the caller accepts the moved frame.
 #pragma once
 
 #include "worker/optimize/design.h"

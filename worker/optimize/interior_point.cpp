@@ -15,7 +15,7 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double kSmallestBarrierShare = 1.0 / 11;  // of the tolerance: mu itself is an error at the end
-constexpr double kDualSpread = 1e10;            // duals stay within mu / s divided and multiplied by this
+constexpr double kDualSpread = 1e10;                // duals stay within mu / s divided and multiplied by this
 constexpr double kRestoredSpread = 1e4;
 constexpr int kMostRestorations = 30;
 constexpr double kRestoredMultiplierStep = 0.5;
@@ -28,7 +28,8 @@ double longest(const VectorXd& values, const VectorXd& step, double fraction) {
 }
 
 void keep_duals_near_path(Iterate& it, double barrier, double spread) {
-  it.duals = it.duals.array().min(spread * barrier / it.slacks.array()).max(barrier / (spread * it.slacks.array()));
+  it.duals =
+      it.duals.array().min(spread * barrier / it.slacks.array()).max(barrier / (spread * it.slacks.array()));
 }
 
 class InteriorPoint {
@@ -48,7 +49,8 @@ class InteriorPoint {
       if (!options_.each(record(iteration, error))) return result(InteriorPointEnd::kCancelled, iteration);
       if (error.worst() <= options_.tolerance) return result(InteriorPointEnd::kOptimal, iteration);
       if (best_will_do(iteration, error)) return result(InteriorPointEnd::kAcceptable, iteration);
-      if (options_.good_enough(iterate_.point, error)) return result(InteriorPointEnd::kGoodEnough, iteration);
+      if (options_.good_enough(iterate_.point, error))
+        return result(InteriorPointEnd::kGoodEnough, iteration);
 
       update_barrier();
       if (!factorise()) return result(InteriorPointEnd::kStuck, iteration);
@@ -68,7 +70,8 @@ class InteriorPoint {
       best_error_ = error.worst();
       best_at_ = iteration;
     }
-    if (best_error_ > kAcceptableFactor * options_.tolerance || iteration < best_at_ + kPatience) return false;
+    if (best_error_ > kAcceptableFactor * options_.tolerance || iteration < best_at_ + kPatience)
+      return false;
     iterate_ = *best_;
     return true;
   }
@@ -106,7 +109,8 @@ class InteriorPoint {
     keep_duals_near_path(iterate_, barrier_.value(), kDualSpread);
   }
 
-  // No trial was acceptable: put D into equilibrium, let slacks follow, and keep half of the multipliers' step.
+  // No trial was acceptable: put D into equilibrium, let slacks follow, and keep half of the multipliers'
+  // step.
   bool restore(const NewtonStep& step) {
     if (++restorations_ > kMostRestorations) return false;
     options_.restore_equilibrium(iterate_.point);
@@ -122,8 +126,12 @@ class InteriorPoint {
   }
 
   IterationRecord record(int iteration, const KktError& error) const {
-    return {iteration, barrier_.value(), objective(program_, iterate_.point), program_volume(program_, iterate_.point),
-            error,     regularisation_.primal};
+    return {iteration,
+            barrier_.value(),
+            objective(program_, iterate_.point),
+            program_volume(program_, iterate_.point),
+            error,
+            regularisation_.primal};
   }
 
   InteriorPointResult result(InteriorPointEnd end, int iterations) const {
@@ -147,7 +155,8 @@ class InteriorPoint {
 
 }  // namespace
 
-InteriorPointResult solve_program(const FrameProgram& program, ProgramVector start, const InteriorPointOptions& options) {
+InteriorPointResult solve_program(const FrameProgram& program, ProgramVector start,
+                                  const InteriorPointOptions& options) {
   return InteriorPoint(program, std::move(start), options).run();
 }
 

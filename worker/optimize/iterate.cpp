@@ -17,7 +17,8 @@ constexpr double kLargestPush = 0.05;
 
 }  // namespace
 
-KktError kkt_error(const FrameProgram& program, const InequalityLayout& layout, const Iterate& iterate, double barrier) {
+KktError kkt_error(const FrameProgram& program, const InequalityLayout& layout, const Iterate& iterate,
+                   double barrier) {
   const ProgramVector gradient = lagrangian_gradient(program, layout, iterate.point, iterate.duals);
   const VectorXd c = inequalities(program, layout, iterate.point);
   KktError error;
@@ -40,7 +41,8 @@ KktError kkt_error(const FrameProgram& program, const InequalityLayout& layout, 
   return error;
 }
 
-Iterate start_iterate(const FrameProgram& program, const InequalityLayout& layout, ProgramVector point, double barrier) {
+Iterate start_iterate(const FrameProgram& program, const InequalityLayout& layout, ProgramVector point,
+                      double barrier) {
   for (int j = 0; j < program.strut_count(); ++j) {
     if (program.area_is_given(j)) {
       point.areas[j] = program.lower[j];

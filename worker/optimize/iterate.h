@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the interior point stands: the point, and a slack and a dual for each inequality, c + s = 0 and z s = mu.
+// Where the interior point stands: the point, and a slack and a dual for each inequality, c + s = 0 and z s =
+// mu.
 #pragma once
 
 #include "worker/optimize/frame_program.h"
@@ -11,21 +12,24 @@ struct Iterate {
   Eigen::VectorXd slacks, duals;  // positive
 };
 
-// Of the perturbed Karush-Kuhn-Tucker conditions: infinity norms, the dual and complementarity parts divided by the
-// scale of the multipliers (Waechter and Biegler 2006, eq. 5).
+// Of the perturbed Karush-Kuhn-Tucker conditions: infinity norms, the dual and complementarity parts divided
+// by the scale of the multipliers (Waechter and Biegler 2006, eq. 5).
 struct KktError {
   double dual = 0;
   double primal = 0;
   double complementarity = 0;  // |z s - mu|
   double worst() const { return std::max({dual, primal, complementarity}); }
 };
-KktError kkt_error(const FrameProgram& program, const InequalityLayout& layout, const Iterate& iterate, double barrier);
+KktError kkt_error(const FrameProgram& program, const InequalityLayout& layout, const Iterate& iterate,
+                   double barrier);
 
-// The iterate at `point` with slacks that fit it, at least slack_floor, and duals barrier / slack. Areas and moving nodes
-// are first pushed a little inside their bounds.
-Iterate start_iterate(const FrameProgram& program, const InequalityLayout& layout, ProgramVector point, double barrier);
+// The iterate at `point` with slacks that fit it, at least slack_floor, and duals barrier / slack. Areas and
+// moving nodes are first pushed a little inside their bounds.
+Iterate start_iterate(const FrameProgram& program, const InequalityLayout& layout, ProgramVector point,
+                      double barrier);
 
-// Slacks of linear inequalities (areas, half-spaces) follow the point exactly, the others grow where c leaves room.
+// Slacks of linear inequalities (areas, half-spaces) follow the point exactly, the others grow where c leaves
+// room.
 void follow_point(const FrameProgram& program, const InequalityLayout& layout, Iterate& iterate);
 
 }  // namespace skinframe

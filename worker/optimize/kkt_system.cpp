@@ -21,7 +21,8 @@ int case_at(int k) { return kPerCase * k; }
 
 std::vector<int> node_block_rows(const FrameProgram& program) {
   std::vector<int> rows(program.node_count());
-  for (int i = 0; i < program.node_count(); ++i) rows[i] = 6 * program.case_count() + (program.moves[i] ? 3 : 0);
+  for (int i = 0; i < program.node_count(); ++i)
+    rows[i] = 6 * program.case_count() + (program.moves[i] ? 3 : 0);
   return rows;
 }
 
@@ -31,8 +32,10 @@ Matrix3d length_hessian(const Vector3d& e) {
   return Matrix3d::Identity() / l - e * e.transpose() / (l * l * l);
 }
 
-// What takes the place of the duals when slacks and duals are condensed: mu / s + Sigma (c + s); z for the dense rows.
-VectorXd condensed_duals(const FrameProgram& program, const InequalityLayout& layout, const Iterate& it, double barrier) {
+// What takes the place of the duals when slacks and duals are condensed: mu / s + Sigma (c + s); z for the
+// dense rows.
+VectorXd condensed_duals(const FrameProgram& program, const InequalityLayout& layout, const Iterate& it,
+                         double barrier) {
   const VectorXd c = inequalities(program, layout, it.point);
   VectorXd pulls = (barrier + it.duals.array() * (c + it.slacks).array()) / it.slacks.array();
   pulls.tail(layout.row_count) = it.duals.tail(layout.row_count);
@@ -100,14 +103,16 @@ void KktSystem::assemble(const Iterate& it, double barrier, const Regularisation
   }
 
   double volume_weight = program_.volume_weight;
-  if (program_.volume_cap) volume_weight += it.duals[layout_.count - 1] * program_.cap_scale / *program_.volume_cap;
+  if (program_.volume_cap)
+    volume_weight += it.duals[layout_.count - 1] * program_.cap_scale / *program_.volume_cap;
   StrutTerms& terms = scratch_;
   for (int j = 0; j < program_.strut_count(); ++j) {
     terms.hessian.setZero(coordinates(j), coordinates(j));
     terms.slope.setZero(coordinates(j));
     terms.border.setZero(coordinates(j), borders);
     terms.row_area.setZero(layout_.row_count);
-    terms.curvature = regularisation.primal + it.duals[layout_.area_lower + j] / it.slacks[layout_.area_lower + j] +
+    terms.curvature = regularisation.primal +
+                      it.duals[layout_.area_lower + j] / it.slacks[layout_.area_lower + j] +
                       it.duals[layout_.area_upper + j] / it.slacks[layout_.area_upper + j];
     add_equilibrium(j, it, terms);
     add_strains(j, it, terms);
@@ -280,7 +285,8 @@ void KktSystem::scatter(int j, const StrutTerms& terms, const VectorXd& right_ha
     for (const Axis& r : axes_[ends[0]]) block(r.row, c.row) += entry(r, -1, c, 1);
 }
 
-void KktSystem::add_nodes(const Iterate& it, const ProgramVector& gradient, const Regularisation& regularisation) {
+void KktSystem::add_nodes(const Iterate& it, const ProgramVector& gradient,
+                          const Regularisation& regularisation) {
   const int n = program_.node_count();
   for (int i = 0; i < n; ++i) {
     BlockLdlt::Block block = matrix_.node_block(i);
@@ -295,8 +301,9 @@ void KktSystem::add_nodes(const Iterate& it, const ProgramVector& gradient, cons
         const int c = layout_.displacement_at(k, i, n);
         const double sigma = it.duals[c] / it.slacks[c];
         const Vector3d slope = 2 / *program_.squared_displacement_limit * it.point.displacements[k].col(i);
-        block.block<3, 3>(d, d) += 2 * it.duals[c] / *program_.squared_displacement_limit * Matrix3d::Identity() +
-                                   sigma * slope * slope.transpose();
+        block.block<3, 3>(d, d) +=
+            2 * it.duals[c] / *program_.squared_displacement_limit * Matrix3d::Identity() +
+            sigma * slope * slope.transpose();
         if (program_.elastic == ElasticScope::kLimits) {
           border_.block<3, 1>(first + d, layout_.row_count) -= sigma * slope;
           corner_(layout_.row_count, layout_.row_count) += sigma;
@@ -334,12 +341,14 @@ bool KktSystem::factorise() {
   matrix_.solve_in_place(solved_border_);
   schur_ = corner_ - border_.transpose() * solved_border_;
   if (!schur_.allFinite()) return false;
-  const VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<MatrixXd>(schur_, Eigen::EigenvaluesOnly).eigenvalues();
+  const VectorXd eigenvalues =
+      Eigen::SelfAdjointEigenSolver<MatrixXd>(schur_, Eigen::EigenvaluesOnly).eigenvalues();
   return (eigenvalues.array() < 0).count() == layout_.row_count &&
          (eigenvalues.array() > 0).count() == (has_elastic_ ? 1 : 0);
 }
 
-void KktSystem::back_substitute(const VectorXd& y, const VectorXd& r, VectorXd& nodes, VectorXd& border) const {
+void KktSystem::back_substitute(const VectorXd& y, const VectorXd& r, VectorXd& nodes,
+                                VectorXd& border) const {
   MatrixXd solution = y;
   matrix_.solve_in_place(solution);
   nodes = solution.col(0);
@@ -358,7 +367,8 @@ KktStep KktSystem::solve() const {
       y -= border_ * border;
       r -= border_.transpose() * nodes + corner_ * border;
     }
-    if (y.size() == 0 || y.lpNorm<Infinity>() <= kRefinedEnough * (1 + right_hand_side_.lpNorm<Infinity>())) break;
+    if (y.size() == 0 || y.lpNorm<Infinity>() <= kRefinedEnough * (1 + right_hand_side_.lpNorm<Infinity>()))
+      break;
     VectorXd more_nodes, more_border;
     back_substitute(y, r, more_nodes, more_border);
     nodes += more_nodes;

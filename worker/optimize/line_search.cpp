@@ -19,7 +19,8 @@ constexpr int kMostHalvings = 25;
 
 LineSearch::Measure LineSearch::measure(const Iterate& it, double barrier) const {
   double violation = (inequalities(program_, layout_, it.point) + it.slacks).lpNorm<1>();
-  for (const NodeMatrix& residual : equilibrium_residuals(program_, it.point)) violation += residual.lpNorm<1>();
+  for (const NodeMatrix& residual : equilibrium_residuals(program_, it.point))
+    violation += residual.lpNorm<1>();
   return {violation, objective(program_, it.point) - barrier * it.slacks.array().log().sum()};
 }
 
@@ -46,7 +47,8 @@ std::optional<Iterate> LineSearch::search(const Iterate& it, const NewtonStep& s
     trial.point.add(length, step.point);
     follow_point(program_, layout_, trial);
     const Measure there = measure(trial, barrier);
-    if (!std::isfinite(there.merit) || !(there.violation <= *largest_violation_) || !acceptable(there)) continue;
+    if (!std::isfinite(there.merit) || !(there.violation <= *largest_violation_) || !acceptable(there))
+      continue;
     const bool objective_leads =
         slope < 0 && here.violation <= *small_violation_ &&
         length * std::pow(-slope, kMeritPower) > std::pow(here.violation, kViolationPower);

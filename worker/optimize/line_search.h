@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The filter line search (Fletcher and Leyffer 2002; Waechter and Biegler 2006, section 2.3): a trial point is taken when it
-// improves on every pair (constraint violation, barrier objective) that earlier points have left behind.
+// The filter line search (Fletcher and Leyffer 2002; Waechter and Biegler 2006, section 2.3): a trial point
+// is taken when it improves on every pair (constraint violation, barrier objective) that earlier points have
+// left behind.
 #pragma once
 
 #include <optional>
@@ -12,9 +13,12 @@ namespace skinframe {
 
 class LineSearch {
  public:
-  LineSearch(const FrameProgram& program, const InequalityLayout& layout) : program_(program), layout_(layout) {}
+  LineSearch(const FrameProgram& program, const InequalityLayout& layout)
+      : program_(program), layout_(layout) {}
 
-  void reset() { filter_.clear(), largest_violation_.reset(); }  // the barrier, and with it the merit, has changed
+  void reset() {
+    filter_.clear(), largest_violation_.reset();
+  }  // the barrier, and with it the merit, has changed
 
   // The accepted trial with its point and slacks moved (duals are as before), or none.
   std::optional<Iterate> search(const Iterate& iterate, const NewtonStep& step, double barrier);

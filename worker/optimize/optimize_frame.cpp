@@ -17,16 +17,20 @@ namespace skinframe {
 namespace {
 
 StageRecord record_of(const FrameProblem& problem, double volume_mm3) {
-  return {static_cast<int>(problem.frame.nodes_mm.size()), static_cast<int>(problem.frame.struts.size()), volume_mm3};
+  return {static_cast<int>(problem.frame.nodes_mm.size()), static_cast<int>(problem.frame.struts.size()),
+          volume_mm3};
 }
 
 }  // namespace
 
 const char* to_string(Termination termination) {
   switch (termination) {
-    case Termination::kOptimal: return "optimal";
-    case Termination::kInfeasible: return "infeasible";
-    case Termination::kIterationLimit: return "iteration_limit";
+    case Termination::kOptimal:
+      return "optimal";
+    case Termination::kInfeasible:
+      return "infeasible";
+    case Termination::kIterationLimit:
+      return "iteration_limit";
   }
   return "unknown";
 }
@@ -38,14 +42,17 @@ Status OptimizeOptions::validate() const {
   for (const Status& status :
        {require(kkt_tolerance > 0 && kkt_tolerance <= 1e-3, "kkt_tolerance must lie in (0, 1e-3]"),
         require(max_interior_point_iterations > 0, "max_interior_point_iterations must be positive"),
-        require(feasibility_tolerance > 0 && feasibility_tolerance <= 1e-2, "feasibility_tolerance must lie in (0, 1e-2]"),
+        require(feasibility_tolerance > 0 && feasibility_tolerance <= 1e-2,
+                "feasibility_tolerance must lie in (0, 1e-2]"),
         require(outer_decrease >= 0 && outer_decrease < 1, "outer_decrease must lie in [0, 1)"),
         require(max_outer_iterations > 0, "max_outer_iterations must be positive"),
         require(topology_cap_room > 0 && topology_cap_room < 1, "topology_cap_room must lie in (0, 1)"),
         require(topology_reweightings > 0, "topology_reweightings must be positive"),
         require(topology_xi > 0 && topology_xi <= 1, "topology_xi must lie in (0, 1]"),
-        require(relaxed_removal_share > 0 && relaxed_removal_share < 1, "relaxed_removal_share must lie in (0, 1)"),
-        require(topology_removal_share > 0 && topology_removal_share < 1, "topology_removal_share must lie in (0, 1)"),
+        require(relaxed_removal_share > 0 && relaxed_removal_share < 1,
+                "relaxed_removal_share must lie in (0, 1)"),
+        require(topology_removal_share > 0 && topology_removal_share < 1,
+                "topology_removal_share must lie in (0, 1)"),
         require(max_geometry_passes > 0, "max_geometry_passes must be positive"),
         require(geometry_decrease >= 0 && geometry_decrease < 1, "geometry_decrease must lie in [0, 1)"),
         require(region_share > 0 && region_share < 0.5, "region_share must lie in (0, 0.5)"),
@@ -103,18 +110,22 @@ class Algorithm {
 
   // TopOpt and GeoOpt in turn until the volume falls by less than outer_decrease.
   void reduce() {
-    const bool topology = options_.topology || (options_.relaxed && options_.order == OptimizeOptions::Order::kTight);
+    const bool topology =
+        options_.topology || (options_.relaxed && options_.order == OptimizeOptions::Order::kTight);
     if (!topology && !options_.geometry) return;
     for (int round = 0; round < options_.max_outer_iterations; ++round) {
       const double before = design_.volume_mm3;
       const std::size_t struts = design_.problem.frame.struts.size();
       if (topology)
-        timed("topology", Stage::kTopology, [&] { design_ = optimise_topology(std::move(design_), session_); });
+        timed("topology", Stage::kTopology,
+              [&] { design_ = optimise_topology(std::move(design_), session_); });
       if (session_.cancelled()) return;
       if (round == 0) result_.topology = record_of(design_.problem, design_.volume_mm3);
-      if (round > 0 && design_.problem.frame.struts.size() == struts) return;  // geometry has already had this frame
+      if (round > 0 && design_.problem.frame.struts.size() == struts)
+        return;  // geometry has already had this frame
       if (options_.geometry)
-        timed("geometry", Stage::kGeometry, [&] { design_ = optimise_geometry(std::move(design_), session_); });
+        timed("geometry", Stage::kGeometry,
+              [&] { design_ = optimise_geometry(std::move(design_), session_); });
       if (session_.cancelled()) return;
       result_.geometry = record_of(design_.problem, design_.volume_mm3);
       result_.outer_iterations = round + 1;
@@ -126,7 +137,8 @@ class Algorithm {
     result_.radii_mm = radii_of(design_.areas_mm2);
     const std::vector<CaseResponse> responses = solve_equilibrium(design_.problem, design_.areas_mm2);
     result_.evaluation = evaluate(design_.problem, result_.radii_mm, responses);
-    for (const CaseResponse& response : responses) result_.displacements_mm.push_back(response.displacements_mm);
+    for (const CaseResponse& response : responses)
+      result_.displacements_mm.push_back(response.displacements_mm);
     result_.interior_point_iterations = session_.interior_point_iterations();
     result_.node_origin = std::move(design_.node_origin);
     result_.strut_origin = std::move(design_.strut_origin);
@@ -142,7 +154,8 @@ class Algorithm {
 
 }  // namespace
 
-Result<OptimizeResult> optimize_frame(const FrameProblem& problem, const OptimizeOptions& options, RunContext& context) {
+Result<OptimizeResult> optimize_frame(const FrameProblem& problem, const OptimizeOptions& options,
+                                      RunContext& context) {
   if (Status s = validate(problem); !s.ok()) return s.error();
   if (Status s = options.validate(); !s.ok()) return s.error();
   if (context.cancelled()) return cancelled_error();

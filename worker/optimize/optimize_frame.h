@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The least frame that keeps constraints (1)-(10): SizeOpt (15), then TopOpt (17-20) and GeoOpt (21) in turn until the
-// volume falls by less than a percent. Algorithm 1 of Wang et al. 2013, from a given initial frame.
+// The least frame that keeps constraints (1)-(10): SizeOpt (15), then TopOpt (17-20) and GeoOpt (21) in turn
+// until the volume falls by less than a percent. Algorithm 1 of Wang et al. 2013, from a given initial frame.
 //
 // Guarantees:
 //  - Same problem and options, same result, bit for bit.
@@ -36,14 +36,15 @@ struct OptimizeOptions {
   bool topology = true;  // reweighted removal of struts
   bool geometry = true;
 
-  // The regions of the free nodes about the present frame, asked for before each geometry pass. Empty: a box around each
-  // free node of half width region_share times the distance to its nearest neighbour.
+  // The regions of the free nodes about the present frame, asked for before each geometry pass. Empty: a box
+  // around each free node of half width region_share times the distance to its nearest neighbour.
   std::function<NodeRegions(const Frame&, const std::vector<double>& radii_mm)> convex_regions;
-  // Geometry's veto on a moved and re-sized frame. False: the pass's move is halved up to max_move_halvings times, then
-  // the pass is dropped. Empty: every frame is accepted.
+  // Geometry's veto on a moved and re-sized frame. False: the pass's move is halved up to max_move_halvings
+  // times, then the pass is dropped. Empty: every frame is accepted.
   std::function<bool(const Frame&, const std::vector<double>& radii_mm)> accepts;
 
-  // Interior point: scaled Karush-Kuhn-Tucker error <= kkt_tolerance (nondimensional problem), range (0, 1e-3].
+  // Interior point: scaled Karush-Kuhn-Tucker error <= kkt_tolerance (nondimensional problem), range (0,
+  // 1e-3].
   double kkt_tolerance = 1e-7;
   int max_interior_point_iterations = 300;  // of one program, > 0
 
@@ -57,19 +58,20 @@ struct OptimizeOptions {
   // TopOpt: cap = (1 + topology_cap_room) * volume (20), range (0, 1).
   double topology_cap_room = 0.005;
   int topology_reweightings = 2;  // > 0
-  // Weights proportional to 1 / (topology_xi * mean area + A), range (0, 1]: xi of (18), linear in A and not in r, since a
-  // xi of 1e-7 in r fails in every solver tried.
+  // Weights proportional to 1 / (topology_xi * mean area + A), range (0, 1]: xi of (18), linear in A and not
+  // in r, since a xi of 1e-7 in r fails in every solver tried.
   double topology_xi = 0.05;
-  // A strut goes when A <= removal_share * lower bound, after the relaxed and after the reweighted program; (0, 1).
+  // A strut goes when A <= removal_share * lower bound, after the relaxed and after the reweighted program;
+  // (0, 1).
   double relaxed_removal_share = 0.25;
   double topology_removal_share = 0.05;
 
   // GeoOpt: passes a round; a pass counts when volume <= (1 - geometry_decrease) * volume before.
-  int max_geometry_passes = 4;      // > 0
+  int max_geometry_passes = 4;       // > 0
   double geometry_decrease = 0.002;  // [0, 1)
   double region_share = 0.45;        // of the distance to the nearest neighbour, (0, 0.5)
-  double min_length_mm = 0;          // struts of free nodes stay at least this long; 0: half of their present length
-  int max_move_halvings = 3;         // >= 0
+  double min_length_mm = 0;   // struts of free nodes stay at least this long; 0: half of their present length
+  int max_move_halvings = 3;  // >= 0
 
   Status validate() const;
 };
@@ -78,9 +80,9 @@ struct OptimizeOptions {
 inline constexpr double kVolumeTie = 1e-7;
 
 enum class Termination {
-  kOptimal,         // every stage ended at its optimum (a local one for topology and geometry)
-  kInfeasible,      // no frame keeps the constraints: violated_constraint says which, detail whether that is proven or
-                    // the best reachable is merely a local optimum; radii are at the best reachable
+  kOptimal,     // every stage ended at its optimum (a local one for topology and geometry)
+  kInfeasible,  // no frame keeps the constraints: violated_constraint says which, detail whether that is
+                // proven or the best reachable is merely a local optimum; radii are at the best reachable
   kIterationLimit,  // feasible, but the last sizing stopped before its tolerance
 };
 
@@ -94,27 +96,30 @@ struct StageRecord {
 
 struct OptimizeResult {
   Termination reason = Termination::kOptimal;
-  std::string detail;                     // one sentence for people
-  FrameProblem problem;                   // the reduced frame at its final positions
-  std::vector<double> radii_mm;           // one a strut of problem.frame
+  std::string detail;                                          // one sentence for people
+  FrameProblem problem;                                        // the reduced frame at its final positions
+  std::vector<double> radii_mm;                                // one a strut of problem.frame
   std::vector<std::vector<Eigen::Vector3d>> displacements_mm;  // one list a load case
-  Evaluation evaluation;                  // of radii_mm in problem
-  // initial: the frame as given, at its lower bounds. size, topology, geometry: sized frames; a stage that did not run
-  // repeats the one before.
+  Evaluation evaluation;                                       // of radii_mm in problem
+  // initial: the frame as given, at its lower bounds. size, topology, geometry: sized frames; a stage that
+  // did not run repeats the one before.
   StageRecord initial, size, topology, geometry;
-  int outer_iterations = 0;               // of Algorithm 1
-  int interior_point_iterations = 0;      // over all programs
-  double kkt_residual = 0;                // of the last sizing: scaled, nondimensional
-  // No frame of the input's nodes and struts within the area bounds of SizeOpt has less volume. Absent: no bound is known.
+  int outer_iterations = 0;           // of Algorithm 1
+  int interior_point_iterations = 0;  // over all programs
+  double kkt_residual = 0;            // of the last sizing: scaled, nondimensional
+  // No frame of the input's nodes and struts within the area bounds of SizeOpt has less volume. Absent: no
+  // bound is known.
   std::optional<double> lower_bound_mm3;
   std::optional<double> best_reachable_displacement_mm;  // when infeasible
-  std::string violated_constraint;        // when infeasible: displacement, axial stress, shear stress, balance, equilibrium
+  std::string
+      violated_constraint;  // when infeasible: displacement, axial stress, shear stress, balance, equilibrium
   std::map<std::string, double> seconds;  // "size", "topology", "geometry"
   std::vector<int> node_origin;           // index in the input frame, one a node of problem.frame
   std::vector<int> strut_origin;          // the same for struts
 };
 
 // Errors: invalid input (problem or options), cancelled, internal (a library gave up).
-Result<OptimizeResult> optimize_frame(const FrameProblem& problem, const OptimizeOptions& options, RunContext& context);
+Result<OptimizeResult> optimize_frame(const FrameProblem& problem, const OptimizeOptions& options,
+                                      RunContext& context);
 
 }  // namespace skinframe

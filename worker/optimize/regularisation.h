@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which regularisation to try until the inertia is right: none first, then growing, starting near what was needed last
-// time (Waechter and Biegler 2006, algorithm IC).
+// Which regularisation to try until the inertia is right: none first, then growing, starting near what was
+// needed last time (Waechter and Biegler 2006, algorithm IC).
 #pragma once
 
 #include <algorithm>

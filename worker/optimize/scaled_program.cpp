@@ -33,7 +33,8 @@ void set_size_bounds(const FrameProblem& problem, ProgramRequest& request) {
   }
 }
 
-ScaledProgram::ScaledProgram(const FrameProblem& problem, ProgramRequest request, const std::vector<double>& start_mm2)
+ScaledProgram::ScaledProgram(const FrameProblem& problem, ProgramRequest request,
+                             const std::vector<double>& start_mm2)
     : problem_(problem), request_(std::move(request)) {
   const Frame& frame = problem.frame;
   const int n = static_cast<int>(frame.nodes_mm.size()), m = static_cast<int>(frame.struts.size());
@@ -67,7 +68,8 @@ ScaledProgram::ScaledProgram(const FrameProblem& problem, ProgramRequest request
   for (int j = 0; j < m; ++j) {
     program_.lower[j] = request_.lower_mm2[j] / scale_.area_mm2;
     program_.upper[j] = request_.upper_mm2[j] / scale_.area_mm2;
-    if (program_.upper[j] - program_.lower[j] < kNarrow * program_.upper[j]) program_.upper[j] = program_.lower[j];
+    if (program_.upper[j] - program_.lower[j] < kNarrow * program_.upper[j])
+      program_.upper[j] = program_.lower[j];
   }
   if (problem.displacement_limit_mm) program_.squared_displacement_limit = 1;
   program_.elastic = request_.elastic;
@@ -79,7 +81,8 @@ ScaledProgram::ScaledProgram(const FrameProblem& problem, ProgramRequest request
     program_.volume_weight = 0;
     program_.area_weights = VectorXd::Map(request_.area_weights.data(), m);
   }
-  if (request_.volume_cap_mm3) program_.volume_cap = *request_.volume_cap_mm3 / (scale_.area_mm2 * scale_.length_mm);
+  if (request_.volume_cap_mm3)
+    program_.volume_cap = *request_.volume_cap_mm3 / (scale_.area_mm2 * scale_.length_mm);
 
   start_.areas = VectorXd::Map(start_mm2.data(), m) / scale_.area_mm2;
   start_.positions.resize(3, n);
@@ -115,8 +118,9 @@ void ScaledProgram::add_cases() {
   }
 }
 
-// |d| <= epsilon at both ends implies |delta| <= 2 epsilon, and with it (2) and (3) on every strut but the short ones.
-// Of a strut that may vanish although its own bound is positive nothing is asked until it has stayed.
+// |d| <= epsilon at both ends implies |delta| <= 2 epsilon, and with it (2) and (3) on every strut but the
+// short ones. Of a strut that may vanish although its own bound is positive nothing is asked until it has
+// stayed.
 void ScaledProgram::add_strain_limits() {
   const auto add = [&](StrainKind kind, const std::optional<double>& strength, double modulus) {
     if (!strength || modulus <= 0) return;
@@ -184,7 +188,8 @@ NodeVectors ScaledProgram::positions_mm(const ProgramVector& point) const {
 void ScaledProgram::restore_equilibrium(ProgramVector& point) const {
   FrameProblem moved = problem_;
   moved.frame.nodes_mm = positions_mm(point);
-  const std::vector<CaseResponse> responses = EquilibriumSolver(moved).solve(areas_mm2(point), request_.cases);
+  const std::vector<CaseResponse> responses =
+      EquilibriumSolver(moved).solve(areas_mm2(point), request_.cases);
   for (std::size_t k = 0; k < responses.size(); ++k)
     for (int i = 0; i < program_.node_count(); ++i)
       point.displacements[k].col(i) = responses[k].displacements_mm[i] / scale_.displacement_mm;

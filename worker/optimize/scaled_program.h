@@ -26,17 +26,17 @@ struct ProgramScale {
 
 // What a stage asks for beyond the problem itself.
 struct ProgramRequest {
-  std::vector<int> cases;                          // load cases that take part
-  std::vector<double> lower_mm2, upper_mm2;        // one a strut
-  double limit_factor = 1;                         // multiplies the limits of (2), (3) and (6)
-  ElasticScope elastic = ElasticScope::kNone;      // minimise t, and not the volume, when not kNone
+  std::vector<int> cases;                      // load cases that take part
+  std::vector<double> lower_mm2, upper_mm2;    // one a strut
+  double limit_factor = 1;                     // multiplies the limits of (2), (3) and (6)
+  ElasticScope elastic = ElasticScope::kNone;  // minimise t, and not the volume, when not kNone
   std::optional<double> volume_cap_mm3;
-  std::vector<double> area_weights;                // minimise sum w A, and not the volume, when not empty; of order one
-  NodeRegions regions;                             // nodes with a list move; empty: none does
-  std::vector<double> min_length_mm;               // one a strut, where nodes move
-  double initial_barrier = 0.1;                    // less where the start is near the optimum
-  double tolerance_factor = 1;                     // on OptimizeOptions::kkt_tolerance
-  std::optional<int> max_iterations;               // beneath the options' own
+  std::vector<double> area_weights;   // minimise sum w A, and not the volume, when not empty; of order one
+  NodeRegions regions;                // nodes with a list move; empty: none does
+  std::vector<double> min_length_mm;  // one a strut, where nodes move
+  double initial_barrier = 0.1;       // less where the start is near the optimum
+  double tolerance_factor = 1;        // on OptimizeOptions::kkt_tolerance
+  std::optional<int> max_iterations;  // beneath the options' own
 };
 
 // Lower and upper areas of all struts as area_bounds leaves them.
@@ -48,7 +48,9 @@ class ScaledProgram {
   ScaledProgram(const FrameProblem& problem, ProgramRequest request, const std::vector<double>& start_mm2);
 
   const FrameProgram& program() const { return program_; }
-  ProgramVector start() const { return start_; }  // areas as given, displacements in equilibrium, multipliers zero
+  ProgramVector start() const {
+    return start_;
+  }  // areas as given, displacements in equilibrium, multipliers zero
 
   std::vector<double> areas_mm2(const ProgramVector& point) const;
   NodeVectors positions_mm(const ProgramVector& point) const;

@@ -5,18 +5,21 @@
 
 namespace skinframe {
 
-ProgramOutcome Session::solve(const FrameProblem& problem, ProgramRequest request, const std::vector<double>& start_mm2,
+ProgramOutcome Session::solve(const FrameProblem& problem, ProgramRequest request,
+                              const std::vector<double>& start_mm2,
                               std::function<bool(const ProgramVector&, const KktError&)> good_enough) {
   const int struts = static_cast<int>(problem.frame.struts.size());
   InteriorPointOptions options;
   options.initial_barrier = request.initial_barrier;
   options.tolerance = request.tolerance_factor * options_.kkt_tolerance;
   options.max_iterations = options_.max_interior_point_iterations;
-  if (request.max_iterations) options.max_iterations = std::min(options.max_iterations, *request.max_iterations);
+  if (request.max_iterations)
+    options.max_iterations = std::min(options.max_iterations, *request.max_iterations);
   const ScaledProgram scaled(problem, std::move(request), start_mm2);
   options.each = [&](const IterationRecord& record) {
     if (context_.report)
-      context_.report({stage_, stage_iteration_++, scaled.volume_mm3(record.volume), record.error.primal, struts});
+      context_.report(
+          {stage_, stage_iteration_++, scaled.volume_mm3(record.volume), record.error.primal, struts});
     return !context_.cancelled();
   };
   if (good_enough) options.good_enough = std::move(good_enough);

@@ -30,8 +30,10 @@ class Session {
   int interior_point_iterations() const { return iterations_; }
   void enter(Stage stage) { stage_ = stage, stage_iteration_ = 0; }
 
-  // Builds the program, runs the interior point, reports progress at each of its iterations. `good_enough`: see there.
-  ProgramOutcome solve(const FrameProblem& problem, ProgramRequest request, const std::vector<double>& start_mm2,
+  // Builds the program, runs the interior point, reports progress at each of its iterations. `good_enough`:
+  // see there.
+  ProgramOutcome solve(const FrameProblem& problem, ProgramRequest request,
+                       const std::vector<double>& start_mm2,
                        std::function<bool(const ProgramVector&, const KktError&)> good_enough = {});
 
  private:

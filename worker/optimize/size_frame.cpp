@@ -12,7 +12,8 @@
 namespace skinframe {
 namespace {
 
-// The elastic program may stop once the limits hold with this much room, in t = utilisation^2, and with this primal error.
+// The elastic program may stop once the limits hold with this much room, in t = utilisation^2, and with this
+// primal error.
 constexpr double kElasticEnough = 0.98;
 constexpr double kElasticError = 1e-4;
 // The least violation of balance counts as none below this, mm.
@@ -23,7 +24,8 @@ constexpr double kNearBarrier = 1e-2;
 
 class Sizing {
  public:
-  Sizing(const FrameProblem& problem, Session& session) : problem_(problem), session_(session), solver_(problem) {
+  Sizing(const FrameProblem& problem, Session& session)
+      : problem_(problem), session_(session), solver_(problem) {
     set_size_bounds(problem, bounds_);
   }
 
@@ -61,7 +63,8 @@ class Sizing {
     sized.areas_mm2 = std::move(areas_mm2);
     sized.detail = std::move(detail);
     if (reason == Termination::kInfeasible)
-      sized.violated_constraint = violated_constraint(sized.evaluation, session_.options().feasibility_tolerance);
+      sized.violated_constraint =
+          violated_constraint(sized.evaluation, session_.options().feasibility_tolerance);
     return sized;
   }
   SizedFrame cancelled() {
@@ -90,7 +93,8 @@ class Sizing {
     return critical;
   }
 
-  double demand_of(const std::vector<double>& areas_mm2, const std::vector<CaseResponse>& responses, int load_case) const {
+  double demand_of(const std::vector<double>& areas_mm2, const std::vector<CaseResponse>& responses,
+                   int load_case) const {
     return utilisation(evaluate(problem_, radii_of(areas_mm2), {responses[load_case]}));
   }
 
@@ -113,7 +117,8 @@ class Sizing {
       const std::size_t before = cases.size();
       for (int k = 0; k < static_cast<int>(responses.size()); ++k)
         if (std::find(cases.begin(), cases.end(), k) == cases.end() &&
-            demand_of(outcome.areas_mm2, responses, k) > factor * (1 + session_.options().feasibility_tolerance))
+            demand_of(outcome.areas_mm2, responses, k) >
+                factor * (1 + session_.options().feasibility_tolerance))
           cases.push_back(k);
       if (cases.size() == before) return outcome;
     }
@@ -134,7 +139,8 @@ class Sizing {
     if (outcome.end == InteriorPointEnd::kCancelled) return cancelled();
     SizedFrame reached = at(Termination::kInfeasible, outcome.areas_mm2, "");
     const double best = utilisation(reached.evaluation);
-    if (!(best <= start_utilisation)) reached = at(Termination::kInfeasible, start, "");  // the search made it worse
+    if (!(best <= start_utilisation))
+      reached = at(Termination::kInfeasible, start, "");  // the search made it worse
     if (best <= 1) {
       reached.reason = Termination::kOptimal;
       return reached;
@@ -147,7 +153,8 @@ class Sizing {
     return reached;
   }
 
-  // The frame that leans least, when no areas within the bounds bring the centre of gravity over the base; a linear program.
+  // The frame that leans least, when no areas within the bounds bring the centre of gravity over the base; a
+  // linear program.
   std::optional<SizedFrame> least_imbalance() {
     if (problem_.balance.empty()) return std::nullopt;
     const std::vector<double> middle = [&] {
@@ -159,15 +166,17 @@ class Sizing {
       if (evaluated(areas).balance_margin_mm >= 0) return std::nullopt;
     ProgramRequest elastic = request({});
     elastic.elastic = ElasticScope::kBalance;
-    const ProgramOutcome outcome = session_.solve(
-        problem_, elastic, middle, [&](const ProgramVector& point, const KktError&) { return point.elastic < 0; });
+    const ProgramOutcome outcome =
+        session_.solve(problem_, elastic, middle,
+                       [&](const ProgramVector& point, const KktError&) { return point.elastic < 0; });
     if (outcome.end == InteriorPointEnd::kCancelled) return cancelled();
     SizedFrame leaning = at(Termination::kInfeasible, outcome.areas_mm2, "");
     if (leaning.evaluation.balance_margin_mm >= -kBalanceToleranceMm) return std::nullopt;
     leaning.violated_constraint = "balance";
-    leaning.detail = fmt::format("balance cannot be kept: within the bounds on the radii the centre of gravity stays {:.4g} mm "
-                                 "outside the base",
-                                 -leaning.evaluation.balance_margin_mm);
+    leaning.detail = fmt::format(
+        "balance cannot be kept: within the bounds on the radii the centre of gravity stays {:.4g} mm "
+        "outside the base",
+        -leaning.evaluation.balance_margin_mm);
     return leaning;
   }
 
@@ -187,8 +196,10 @@ class Sizing {
     kept.kkt_error = outcome.kkt_error;
     if (holds(kept.evaluation)) return kept;
     sized.reason = Termination::kInfeasible;
-    sized.violated_constraint = violated_constraint(sized.evaluation, session_.options().feasibility_tolerance);
-    sized.detail = fmt::format("{} is not kept where the search ended: no feasible frame was found", sized.violated_constraint);
+    sized.violated_constraint =
+        violated_constraint(sized.evaluation, session_.options().feasibility_tolerance);
+    sized.detail = fmt::format("{} is not kept where the search ended: no feasible frame was found",
+                               sized.violated_constraint);
     return sized;
   }
 

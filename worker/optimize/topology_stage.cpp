@@ -19,7 +19,8 @@ constexpr double kVanishedShare = 1e-4;
 // The printed order caps the volume at SizeOpt's; rounding must not make that infeasible.
 constexpr double kPaperCapRoom = 1e-6;
 constexpr double kNearBarrier = 1e-2;
-// What is thresholded and sized again need not be exact; and a program that does not converge soon is not worth waiting for.
+// What is thresholded and sized again need not be exact; and a program that does not converge soon is not
+// worth waiting for.
 constexpr double kRoughly = 10;
 constexpr int kPatientIterations = 80;
 
@@ -56,9 +57,10 @@ ProgramRequest removal_request(const Design& design) {
   return request;
 }
 
-// The sized frame without the struts whose area fell to `share` of their lower bound, if it is feasible and not larger.
-std::optional<Design> threshold_and_size(const Design& design, const std::vector<double>& areas_mm2, double share,
-                                         Session& session) {
+// The sized frame without the struts whose area fell to `share` of their lower bound, if it is feasible and
+// not larger.
+std::optional<Design> threshold_and_size(const Design& design, const std::vector<double>& areas_mm2,
+                                         double share, Session& session) {
   const std::vector<bool> removable = removable_struts(design.problem);
   const double vanished = kVanishedShare * mean_area(design);
   std::vector<bool> keep(removable.size(), true);
@@ -111,7 +113,8 @@ std::optional<Design> bare_design(const Design& design, const OptimizeOptions& o
 Design relax(Design design, Session& session) {
   const ProgramOutcome outcome = session.solve(design.problem, removal_request(design), design.areas_mm2);
   if (outcome.end == InteriorPointEnd::kCancelled) return design;
-  auto shrunk = threshold_and_size(design, outcome.areas_mm2, session.options().relaxed_removal_share, session);
+  auto shrunk =
+      threshold_and_size(design, outcome.areas_mm2, session.options().relaxed_removal_share, session);
   return shrunk ? std::move(*shrunk) : design;
 }
 

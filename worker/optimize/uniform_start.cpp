@@ -9,9 +9,9 @@
 namespace skinframe {
 namespace {
 
-constexpr double kScanFactor = 1.6;     // between the areas scanned
+constexpr double kScanFactor = 1.6;  // between the areas scanned
 constexpr int kMostScans = 40;
-constexpr double kCloseEnough = 1.02;   // ratio of the bracket's areas
+constexpr double kCloseEnough = 1.02;  // ratio of the bracket's areas
 constexpr int kMostRefinements = 20;
 constexpr double kSmallestShare = 1e-4;  // of the largest area, where lower bounds are zero
 
@@ -23,12 +23,12 @@ UniformStart uniform_start(const FrameProblem& problem, const std::vector<double
     UniformStart start{lower_mm2, 0};
     for (std::size_t j = 0; j < lower_mm2.size(); ++j)
       start.areas_mm2[j] = std::clamp(area, lower_mm2[j], upper_mm2[j]);
-    start.utilisation = utilisation(evaluate(problem, radii_of(start.areas_mm2), solver.solve(start.areas_mm2)));
+    start.utilisation =
+        utilisation(evaluate(problem, radii_of(start.areas_mm2), solver.solve(start.areas_mm2)));
     return start;
   };
   const double most = *std::max_element(upper_mm2.begin(), upper_mm2.end());
-  const double least =
-      std::max(*std::min_element(lower_mm2.begin(), lower_mm2.end()), kSmallestShare * most);
+  const double least = std::max(*std::min_element(lower_mm2.begin(), lower_mm2.end()), kSmallestShare * most);
 
   double below = least;  // infeasible, or the end of the range
   UniformStart best = at(least);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The smallest uniform radius, clipped to each strut's bounds, that keeps (2), (3) and (6): where SizeOpt starts.
-// Starting at the upper bounds fails: a heavy frame sags under its own weight and every multiplier starts wrong.
+// The smallest uniform radius, clipped to each strut's bounds, that keeps (2), (3) and (6): where SizeOpt
+// starts. Starting at the upper bounds fails: a heavy frame sags under its own weight and every multiplier
+// starts wrong.
 #pragma once
 
 #include <vector>

@@ -38,7 +38,8 @@ class Field {
   Field at(std::size_t index) const { return {(*value_)[index], fmt::format("{}[{}]", path_, index)}; }
   std::size_t size(std::size_t most) const {
     if (!value_->is_array()) refuse(path_, "must be a list");
-    if (value_->size() > most) refuse(path_, fmt::format("{} entries, at most {} are taken", value_->size(), most));
+    if (value_->size() > most)
+      refuse(path_, fmt::format("{} entries, at most {} are taken", value_->size(), most));
     return value_->size();
   }
 
@@ -67,7 +68,8 @@ class Field {
   }
   template <int N>
   Eigen::Matrix<double, N, 1> vector() const {
-    if (!value_->is_array() || value_->size() != N) refuse(path_, fmt::format("must be a list of {} numbers", N));
+    if (!value_->is_array() || value_->size() != N)
+      refuse(path_, fmt::format("must be a list of {} numbers", N));
     Eigen::Matrix<double, N, 1> v;
     for (int i = 0; i < N; ++i) v[i] = at(static_cast<std::size_t>(i)).number();
     return v;
@@ -83,7 +85,8 @@ ElementModel read_element(const Field& field) {
   const std::string name = field.text();
   for (ElementModel model : {ElementModel::kPaper, ElementModel::kAxial})
     if (name == to_string(model)) return model;
-  throw FieldError{unsupported(fmt::format("mechanics: \"{}\" is not built; use \"paper\" or \"axial\"", name))};
+  throw FieldError{
+      unsupported(fmt::format("mechanics: \"{}\" is not built; use \"paper\" or \"axial\"", name))};
 }
 
 Material read_material(const Field& field, ElementModel element) {
@@ -130,8 +133,8 @@ void read_frame(const Field& root, FrameProblem& problem) {
     for (std::size_t t = 0; t < count; ++t) {
       const Field triangle = triangles.at(t);
       if (triangle.size(3) != 3) refuse(triangle.path(), "must name three nodes");
-      frame.skin_triangles.push_back(
-          {triangle.at(std::size_t{0}).node(node_count), triangle.at(1).node(node_count), triangle.at(2).node(node_count)});
+      frame.skin_triangles.push_back({triangle.at(std::size_t{0}).node(node_count),
+                                      triangle.at(1).node(node_count), triangle.at(2).node(node_count)});
     }
   }
   frame.skin_node_count = leading_skin_nodes(frame);
@@ -193,28 +196,34 @@ void read_free_nodes(const Field& root, FrameProblem& problem) {
   if (!root.has("free_nodes")) return;
   const Field nodes = root.at("free_nodes");
   const std::size_t count = nodes.size(kMaxProblemNodes);
-  for (std::size_t i = 0; i < count; ++i) problem.free_nodes[nodes.at(i).node(problem.free_nodes.size())] = true;
+  for (std::size_t i = 0; i < count; ++i)
+    problem.free_nodes[nodes.at(i).node(problem.free_nodes.size())] = true;
 }
 
 OptimizeOptions read_options(const Field& root) {
   OptimizeOptions options;
   if (root.has("order")) {
     const std::string order = root.at("order").text();
-    if (order != "paper" && order != "tight") refuse("order", fmt::format("\"{}\" is neither paper nor tight", order));
+    if (order != "paper" && order != "tight")
+      refuse("order", fmt::format("\"{}\" is neither paper nor tight", order));
     options.order = order == "paper" ? OptimizeOptions::Order::kPaper : OptimizeOptions::Order::kTight;
   }
   if (!root.has("stages")) return options;
   options.relaxed = options.topology = options.geometry = false;
   bool size = false;
-  const std::pair<const char*, bool*> known[] = {
-      {"size", &size}, {"relaxed", &options.relaxed}, {"topology", &options.topology}, {"geometry", &options.geometry}};
+  const std::pair<const char*, bool*> known[] = {{"size", &size},
+                                                 {"relaxed", &options.relaxed},
+                                                 {"topology", &options.topology},
+                                                 {"geometry", &options.geometry}};
   const Field stages = root.at("stages");
   const std::size_t count = stages.size(std::size(known));
   for (std::size_t i = 0; i < count; ++i) {
     const std::string name = stages.at(i).text();
-    const auto* stage = std::find_if(std::begin(known), std::end(known), [&](const auto& k) { return name == k.first; });
+    const auto* stage =
+        std::find_if(std::begin(known), std::end(known), [&](const auto& k) { return name == k.first; });
     if (stage == std::end(known))
-      refuse(stages.at(i).path(), fmt::format("\"{}\" is not a stage (size, relaxed, topology, geometry)", name));
+      refuse(stages.at(i).path(),
+             fmt::format("\"{}\" is not a stage (size, relaxed, topology, geometry)", name));
     *stage->second = true;
   }
   if (!size) refuse("stages", "\"size\" must be among them: the others build upon it");
@@ -249,7 +258,8 @@ Result<ProblemFile> read_problem(const std::filesystem::path& path) {
   const std::uintmax_t bytes = std::filesystem::file_size(path, failure);
   if (failure) return io_error(fmt::format("{}: {}", path.string(), failure.message()));
   if (bytes > kMaxProblemFileBytes)
-    return invalid_input(fmt::format("{}: {} bytes, at most {} are read", path.string(), bytes, kMaxProblemFileBytes));
+    return invalid_input(
+        fmt::format("{}: {} bytes, at most {} are read", path.string(), bytes, kMaxProblemFileBytes));
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return io_error(fmt::format("{}: cannot be opened", path.string()));
   try {

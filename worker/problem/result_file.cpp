@@ -55,10 +55,11 @@ void add_forces(const OptimizeResult& result, json& cases) {
 json result_json(const OptimizeResult& result) {
   json document = to_json(result.problem, result.radii_mm, result.displacements_mm);
   add_forces(result, document["load_cases"]);
-  document["termination"] = {{"reason", to_string(result.reason)},
-                             {"detail", result.detail},
-                             {"violated_constraint", result.violated_constraint},
-                             {"best_reachable_displacement_mm", optional_json(result.best_reachable_displacement_mm)}};
+  document["termination"] = {
+      {"reason", to_string(result.reason)},
+      {"detail", result.detail},
+      {"violated_constraint", result.violated_constraint},
+      {"best_reachable_displacement_mm", optional_json(result.best_reachable_displacement_mm)}};
   const std::pair<const char*, const StageRecord*> stages[] = {{"initial", &result.initial},
                                                                {"size", &result.size},
                                                                {"topology", &result.topology},
@@ -71,7 +72,8 @@ json result_json(const OptimizeResult& result) {
   document["gap"] = nullptr;
   if (result.lower_bound_mm3 && result.size.volume_mm3 > 0)
     document["gap"] = 1 - *result.lower_bound_mm3 / result.size.volume_mm3;
-  document["iterations"] = {{"outer", result.outer_iterations}, {"interior_point", result.interior_point_iterations}};
+  document["iterations"] = {{"outer", result.outer_iterations},
+                            {"interior_point", result.interior_point_iterations}};
   document["kkt_residual"] = result.kkt_residual;
   document["evaluation"] = evaluation_json(result.evaluation);
   document["seconds"] = result.seconds;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The result of solve-frame as JSON: the reduced frame as a problem file of its own (see problem_file.h, with radii and
-// displacements), and beside it
+// The result of solve-frame as JSON: the reduced frame as a problem file of its own (see problem_file.h, with
+// radii and displacements), and beside it
 //
 //   "termination": {"reason", "detail", "violated_constraint", "best_reachable_displacement_mm"},
-//   "volumes_mm3": {"initial", "size", "topology", "geometry"}, "counts": the same keys, each {"nodes", "struts"},
-//   "lower_bound_mm3" and "gap" (of the sized frame, relative) or null, "iterations": {"outer", "interior_point"},
-//   "kkt_residual", "evaluation": the ratios of mechanics/evaluation.h, "seconds": {stage: s},
-//   "node_origin", "strut_origin": indices in the input,
-//   and on each load case "axial_force_n", "axial_stress_mpa", "shear_stress_mpa" (one a strut), "reactions_n" (one a node).
+//   "volumes_mm3": {"initial", "size", "topology", "geometry"}, "counts": the same keys, each {"nodes",
+//   "struts"}, "lower_bound_mm3" and "gap" (of the sized frame, relative) or null, "iterations": {"outer",
+//   "interior_point"}, "kkt_residual", "evaluation": the ratios of mechanics/evaluation.h, "seconds": {stage:
+//   s}, "node_origin", "strut_origin": indices in the input, and on each load case "axial_force_n",
+//   "axial_stress_mpa", "shear_stress_mpa" (one a strut), "reactions_n" (one a node).
 #pragma once
 
 #include <filesystem>

@@ -17,9 +17,12 @@ constexpr int kSolved = 0, kBadInput = 3, kInfeasible = 4, kInternal = 5, kCance
 int fail(const Error& error) {
   std::cerr << "skinframe: " << error.message << '\n';
   switch (error.kind) {
-    case ErrorKind::kCancelled: return kCancelled;
-    case ErrorKind::kInternal: return kInternal;
-    default: return kBadInput;
+    case ErrorKind::kCancelled:
+      return kCancelled;
+    case ErrorKind::kInternal:
+      return kInternal;
+    default:
+      return kBadInput;
   }
 }
 
@@ -45,8 +48,8 @@ std::string summary_json(const OptimizeResult& r) {
 
 }  // namespace
 
-int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out, bool json_summary,
-                     RunContext& context) {
+int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out,
+                     bool json_summary, RunContext& context) {
   auto file = read_problem(problem);
   if (!file) return fail(file.error());
   auto result = optimize_frame(file->problem, file->options, context);
@@ -59,11 +62,13 @@ int solve_frame_main(const std::filesystem::path& problem, const std::filesystem
   return result->reason == Termination::kInfeasible ? kInfeasible : kSolved;
 }
 
-int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out, bool json_summary) {
+int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out,
+                     bool json_summary) {
   RunContext context;
   context.report = [](const Progress& tick) {
     if (tick.iteration % 10 == 0 && tick.frame_volume_mm3)
-      std::cerr << fmt::format("{} {}: {:.1f} mm3\n", to_string(tick.stage), tick.iteration, *tick.frame_volume_mm3);
+      std::cerr << fmt::format("{} {}: {:.1f} mm3\n", to_string(tick.stage), tick.iteration,
+                               *tick.frame_volume_mm3);
   };
   return solve_frame_main(problem, out, json_summary, context);
 }

@@ -8,10 +8,12 @@
 
 namespace skinframe {
 
-// The exit code: 0 solved, 3 bad problem file, 4 infeasible (the result is written all the same), 5 internal or not
-// writable, 6 cancelled. Errors and progress go to stderr; stdout gets a summary, as one line of JSON when json_summary.
-int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out, bool json_summary,
-                     RunContext& context);
-int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out, bool json_summary);
+// The exit code: 0 solved, 3 bad problem file, 4 infeasible (the result is written all the same), 5 internal
+// or not writable, 6 cancelled. Errors and progress go to stderr; stdout gets a summary, as one line of JSON
+// when json_summary.
+int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out,
+                     bool json_summary, RunContext& context);
+int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out,
+                     bool json_summary);
 
 }  // namespace skinframe

@@ -33,7 +33,8 @@ TEST(Equilibrium, TwoStrutTrussFollowsAlgebra) {
   EXPECT_TRUE(r.in_equilibrium);
 }
 
-// Pulled along, a chain is a bar: F L / (gamma A). Pushed across, the paper's element is a shear spring: F L / (mu A).
+// Pulled along, a chain is a bar: F L / (gamma A). Pushed across, the paper's element is a shear spring: F L
+// / (mu A).
 TEST(Equilibrium, ChainIsABarAlongAndAShearSpringAcross) {
   for (int struts : {1, 4, 16}) {
     FrameProblem problem = chain(struts, 100);

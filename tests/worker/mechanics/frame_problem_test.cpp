@@ -11,8 +11,8 @@
 namespace skinframe {
 namespace {
 
-using ::testing::HasSubstr;
 using testing::chain;
+using ::testing::HasSubstr;
 using testing::load_at;
 
 void expect_refused(const FrameProblem& problem, const std::string& naming) {

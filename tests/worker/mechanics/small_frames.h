@@ -7,7 +7,8 @@
 namespace skinframe::testing {
 
 // Nodes and struts with bounds 0.5..5 mm, P-1's plastic, no support, no load case.
-inline FrameProblem bare_problem(std::vector<Eigen::Vector3d> nodes_mm, const std::vector<std::pair<int, int>>& struts) {
+inline FrameProblem bare_problem(std::vector<Eigen::Vector3d> nodes_mm,
+                                 const std::vector<std::pair<int, int>>& struts) {
   FrameProblem problem;
   problem.material = {"pa", 1586, 1387, std::nullopt, std::nullopt, std::nullopt, 1.15};
   problem.frame.nodes_mm = std::move(nodes_mm);
@@ -19,8 +20,10 @@ inline FrameProblem bare_problem(std::vector<Eigen::Vector3d> nodes_mm, const st
   return problem;
 }
 
-inline LoadCase load_at(const FrameProblem& problem, int node, const Eigen::Vector3d& force_n, bool gravity = false) {
-  LoadCase load{"load", gravity, std::vector<Eigen::Vector3d>(problem.frame.nodes_mm.size(), Eigen::Vector3d::Zero())};
+inline LoadCase load_at(const FrameProblem& problem, int node, const Eigen::Vector3d& force_n,
+                        bool gravity = false) {
+  LoadCase load{"load", gravity,
+                std::vector<Eigen::Vector3d>(problem.frame.nodes_mm.size(), Eigen::Vector3d::Zero())};
   load.force_n[node] = force_n;
   return load;
 }

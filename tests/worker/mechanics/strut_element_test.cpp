@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every derivative against central differences, with the order of the error: halving the step must quarter it.
+// Every derivative against central differences, with the order of the error: halving the step must quarter
+// it.
 #include "worker/mechanics/strut_element.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +16,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-MatrixXd central_differences(const std::function<VectorXd(const VectorXd&)>& f, const VectorXd& x, double step) {
+MatrixXd central_differences(const std::function<VectorXd(const VectorXd&)>& f, const VectorXd& x,
+                             double step) {
   MatrixXd jacobian(f(x).size(), x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) {
     VectorXd up = x, down = x;
@@ -27,7 +29,8 @@ MatrixXd central_differences(const std::function<VectorXd(const VectorXd&)>& f, 
 }
 
 // Exact for quadratics, second order otherwise.
-void expect_derivative(const std::function<VectorXd(const VectorXd&)>& f, const MatrixXd& jacobian, const VectorXd& x) {
+void expect_derivative(const std::function<VectorXd(const VectorXd&)>& f, const MatrixXd& jacobian,
+                       const VectorXd& x) {
   const double step = 1e-2;
   const double coarse = (central_differences(f, x, step) - jacobian).norm();
   const double fine = (central_differences(f, x, step / 2) - jacobian).norm();
@@ -64,14 +67,16 @@ TEST_P(StrutElement, GradientIsTheDerivativeOfTheWork) {
 TEST_P(StrutElement, HessianIsTheDerivativeOfTheGradient) {
   const VectorXd q = sample_state();
   const StrutHessian hessian = strut_work_hessian(springs_, unpack(q));
-  expect_derivative([&](const VectorXd& x) -> VectorXd { return strut_work_gradient(springs_, unpack(x)); }, hessian, q);
+  expect_derivative([&](const VectorXd& x) -> VectorXd { return strut_work_gradient(springs_, unpack(x)); },
+                    hessian, q);
   EXPECT_EQ((hessian - hessian.transpose()).norm(), 0);
 }
 
 TEST_P(StrutElement, WorkIsTheStiffnessBetweenDisplacementAndMultiplier) {
   const StrutState q = unpack(sample_state());
   EXPECT_NEAR(strut_work(springs_, q),
-              q.delta.dot(strut_stiffness(springs_, q.e) * q.eta) + springs_.half_weight * q.e.norm() * q.s, 1e-14);
+              q.delta.dot(strut_stiffness(springs_, q.e) * q.eta) + springs_.half_weight * q.e.norm() * q.s,
+              1e-14);
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, StrutElement, ::testing::Values(ElementModel::kPaper, ElementModel::kAxial),
@@ -94,14 +99,19 @@ TEST_P(StrutStrain, DerivativesAreThoseOfTheSquaredStrain) {
   q << 1.1, -0.7, 0.9, 0.3, -0.2, 0.5;
   const StrainKind kind = GetParam();
   expect_derivative(
-      [&](const VectorXd& x) { return VectorXd::Constant(1, squared_strain(kind, x.head<3>(), x.tail<3>())); },
+      [&](const VectorXd& x) {
+        return VectorXd::Constant(1, squared_strain(kind, x.head<3>(), x.tail<3>()));
+      },
       squared_strain_gradient(kind, q.head<3>(), q.tail<3>()).transpose(), q);
-  expect_derivative([&](const VectorXd& x) -> VectorXd { return squared_strain_gradient(kind, x.head<3>(), x.tail<3>()); },
-                    squared_strain_hessian(kind, q.head<3>(), q.tail<3>()), q);
+  expect_derivative(
+      [&](const VectorXd& x) -> VectorXd { return squared_strain_gradient(kind, x.head<3>(), x.tail<3>()); },
+      squared_strain_hessian(kind, q.head<3>(), q.tail<3>()), q);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, StrutStrain, ::testing::Values(StrainKind::kAxial, StrainKind::kShear),
-                         [](const auto& tested) { return tested.param == StrainKind::kAxial ? "axial" : "shear"; });
+                         [](const auto& tested) {
+                           return tested.param == StrainKind::kAxial ? "axial" : "shear";
+                         });
 
 TEST(StrutStrain, SplitsAStretchAndAShear) {
   const Vector3d e(10, 0, 0);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// First derivatives of the program against finite differences, and second derivatives through the property that defines a
-// Newton step: along it every equation of the perturbed KKT system falls as 1 - h, up to a remainder of order h^2.
+// First derivatives of the program against finite differences, and second derivatives through the property
+// that defines a Newton step: along it every equation of the perturbed KKT system falls as 1 - h, up to a
+// remainder of order h^2.
 #include "worker/optimize/frame_program.h"
 
 #include <gtest/gtest.h>
@@ -16,7 +17,8 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-// A small program in which every term takes part: two cases, moving nodes, strain limits, half-spaces, balance, cap.
+// A small program in which every term takes part: two cases, moving nodes, strain limits, half-spaces,
+// balance, cap.
 FrameProgram sample_program(ElasticScope elastic) {
   FrameProgram p;
   p.struts = {{0, 3}, {1, 3}, {2, 3}, {0, 4}, {1, 4}, {3, 4}, {2, 4}, {3, 5}, {4, 5}};
@@ -38,7 +40,10 @@ FrameProgram sample_program(ElasticScope elastic) {
   p.elastic = elastic;
   p.elastic_weight = elastic == ElasticScope::kNone ? 0 : 2.5;
   p.squared_displacement_limit = 1.7;
-  p.strain_limits = {{0, StrainKind::kAxial, 0.8}, {0, StrainKind::kShear, 0.9}, {5, StrainKind::kAxial, 0.7}, {7, StrainKind::kShear, 1.1}};
+  p.strain_limits = {{0, StrainKind::kAxial, 0.8},
+                     {0, StrainKind::kShear, 0.9},
+                     {5, StrainKind::kAxial, 0.7},
+                     {7, StrainKind::kShear, 1.1}};
   p.slenderness_area = 0.1;
   p.squared_min_length = VectorXd::Constant(9, 0.2);
   p.half_spaces = {{3, Vector3d(1, 0.2, 0).normalized(), 3}, {4, Vector3d(0, -1, 0.4).normalized(), 4}};
@@ -89,10 +94,12 @@ ProgramVector sample_direction(const FrameProgram& p) {
   return v;
 }
 
-double lagrangian(const FrameProgram& p, const InequalityLayout& at, const ProgramVector& v, const VectorXd& weights) {
+double lagrangian(const FrameProgram& p, const InequalityLayout& at, const ProgramVector& v,
+                  const VectorXd& weights) {
   double value = objective(p, v) + weights.dot(inequalities(p, at, v));
   const auto residuals = equilibrium_residuals(p, v);
-  for (std::size_t k = 0; k < residuals.size(); ++k) value += residuals[k].cwiseProduct(v.multipliers[k]).sum();
+  for (std::size_t k = 0; k < residuals.size(); ++k)
+    value += residuals[k].cwiseProduct(v.multipliers[k]).sum();
   return value;
 }
 
@@ -149,7 +156,8 @@ TEST_P(FrameProgramOf, NewtonStepLowersEveryKktEquationAlike) {
   const FrameProgram p = sample_program(GetParam());
   const InequalityLayout at(p);
   const double mu = 0.1;
-  Iterate it{sample_point(p), VectorXd::LinSpaced(at.count, 0.6, 1.4), VectorXd::LinSpaced(at.count, 1.5, 0.4)};
+  Iterate it{sample_point(p), VectorXd::LinSpaced(at.count, 0.6, 1.4),
+             VectorXd::LinSpaced(at.count, 1.5, 0.4)};
   KktSystem kkt(p, at);
   kkt.assemble(it, mu, {});
   kkt.factorise();  // the step is the Newton step whatever the inertia is
@@ -169,7 +177,8 @@ TEST_P(FrameProgramOf, NewtonStepLowersEveryKktEquationAlike) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Elastic, FrameProgramOf,
-                         ::testing::Values(ElasticScope::kNone, ElasticScope::kLimits, ElasticScope::kBalance),
+                         ::testing::Values(ElasticScope::kNone, ElasticScope::kLimits,
+                                           ElasticScope::kBalance),
                          [](const auto& tested) {
                            return tested.param == ElasticScope::kNone     ? "none"
                                   : tested.param == ElasticScope::kLimits ? "limits"

@@ -35,7 +35,8 @@ void expect_sound(const FrameProblem& input, const OptimizeResult& r) {
   EXPECT_TRUE(validate(r.problem).ok());
   EXPECT_LE(r.topology.volume_mm3, (1 + kVolumeTie) * r.size.volume_mm3);
   EXPECT_LE(r.geometry.volume_mm3, (1 + kVolumeTie) * r.topology.volume_mm3);
-  EXPECT_NEAR(frame_volume_mm3(r.problem.frame, r.radii_mm), r.geometry.volume_mm3, 1e-9 * r.geometry.volume_mm3);
+  EXPECT_NEAR(frame_volume_mm3(r.problem.frame, r.radii_mm), r.geometry.volume_mm3,
+              1e-9 * r.geometry.volume_mm3);
   ASSERT_EQ(r.node_origin.size(), r.problem.frame.nodes_mm.size());
   ASSERT_EQ(r.strut_origin.size(), r.problem.frame.struts.size());
   for (std::size_t j = 0; j < r.strut_origin.size(); ++j) {
@@ -45,7 +46,8 @@ void expect_sound(const FrameProblem& input, const OptimizeResult& r) {
   }
   for (std::size_t i = 0; i < r.node_origin.size(); ++i)
     if (!input.free_nodes[r.node_origin[i]]) {
-      EXPECT_EQ(r.problem.frame.nodes_mm[i], input.frame.nodes_mm[r.node_origin[i]]) << "skin nodes do not move";
+      EXPECT_EQ(r.problem.frame.nodes_mm[i], input.frame.nodes_mm[r.node_origin[i]])
+          << "skin nodes do not move";
     }
 }
 
@@ -112,7 +114,8 @@ TEST(OptimizeFrame, InfeasibleEndsWithTheBestIterateAndItsName) {
   EXPECT_NEAR(evaluate(r.problem, r.radii_mm).max_displacement_mm, *r.best_reachable_displacement_mm, 1e-9);
 }
 
-// A bent chain pulled straight: the middle node moves onto the line, and the struts become the bar F L / (gamma epsilon).
+// A bent chain pulled straight: the middle node moves onto the line, and the struts become the bar F L /
+// (gamma epsilon).
 TEST(GeoOpt, BentChainIsStraightened) {
   FrameProblem problem = testing::bare_problem({{0, 0, 0}, {50, 12, 0}, {100, 0, 0}}, {{0, 1}, {1, 2}});
   problem.fixed[0] = {true, true, true};

@@ -53,7 +53,8 @@ TEST(SizeOpt, TwoStrutTrussIsAsThickAsTheStressAsks) {
 
 // A chain pulled at its end: u = F sum l_j / (gamma A_j); the optimum is uniform, A = F L / (gamma epsilon).
 TEST(SizeOpt, PulledChainIsUniform) {
-  FrameProblem problem = bare_problem({{0, 0, 0}, {20, 0, 0}, {70, 0, 0}, {100, 0, 0}}, {{0, 1}, {1, 2}, {2, 3}});
+  FrameProblem problem =
+      bare_problem({{0, 0, 0}, {20, 0, 0}, {70, 0, 0}, {100, 0, 0}}, {{0, 1}, {1, 2}, {2, 3}});
   problem.fixed[0] = {true, true, true};
   problem.displacement_limit_mm = 0.05;
   problem.load_cases = {load_at(problem, 3, {8, 0, 0})};
@@ -63,7 +64,8 @@ TEST(SizeOpt, PulledChainIsUniform) {
   EXPECT_NEAR(r.evaluation.max_displacement_mm, 0.05, 1e-8);
 }
 
-// The second strut sits at its upper bound A2: the first makes up for it, l1 / A1 = gamma epsilon / F - l2 / A2.
+// The second strut sits at its upper bound A2: the first makes up for it, l1 / A1 = gamma epsilon / F - l2 /
+// A2.
 TEST(SizeOpt, BoundsAreKeptAndTheRestMakesUpForThem) {
   FrameProblem problem = chain(2, 100);
   problem.bounds[1] = {0.5, 1.6};
@@ -75,7 +77,8 @@ TEST(SizeOpt, BoundsAreKeptAndTheRestMakesUpForThem) {
   EXPECT_NEAR(area(r.radii_mm[0]), first, 1e-3 * first);
 }
 
-// Each case alone wants one strut thick. Case x on strut 0 (along x), case z on strut 1 (along z), pin-jointed.
+// Each case alone wants one strut thick. Case x on strut 0 (along x), case z on strut 1 (along z),
+// pin-jointed.
 TEST(SizeOpt, EveryLoadCaseIsServedThoughOnlyOneIsCritical) {
   FrameProblem problem = bare_problem({{50, 0, 0}, {0, 0, 50}, {0, 0, 0}}, {{0, 2}, {1, 2}});
   problem.element = ElementModel::kAxial;
@@ -112,8 +115,8 @@ TEST(SizeOpt, InfeasibleLoadGivesTheBestReachableDisplacement) {
   EXPECT_NEAR(*r.best_reachable_displacement_mm, 200 * 90 / (1586 * area(5)), 1e-4);
 }
 
-// A lying strut of mass rho A l at x = 10 against the skin's weight at x = 40 over a base that ends at x = 20:
-// W (40 - 20) <= rho g A l (20 - 10).
+// A lying strut of mass rho A l at x = 10 against the skin's weight at x = 40 over a base that ends at x =
+// 20: W (40 - 20) <= rho g A l (20 - 10).
 TEST(SizeOpt, BalanceThickensWhatWeighsOnTheRightSide) {
   FrameProblem problem = bare_problem({{0, 0, 0}, {20, 0, 0}}, {{0, 1}});
   problem.fixed[0] = problem.fixed[1] = {true, true, true};
@@ -139,6 +142,25 @@ TEST(SizeOpt, BalanceOutOfReachIsNamed) {
   EXPECT_EQ(r.reason, Termination::kInfeasible);
   EXPECT_EQ(r.violated_constraint, "balance");
   EXPECT_LT(r.evaluation.balance_margin_mm, 0);
+}
+
+// The ten-bar truss of the textbooks (in inches, kips, ksi; stress limit 25, area at least 0.1): 1593.2 lb at
+// 0.1 lb/in3.
+TEST(SizeOpt, TenBarTrussReachesThePublishedStressOptimum) {
+  FrameProblem problem =
+      bare_problem({{720, 0, 360}, {720, 0, 0}, {360, 0, 360}, {360, 0, 0}, {0, 0, 360}, {0, 0, 0}},
+                   {{4, 2}, {2, 0}, {5, 3}, {3, 1}, {2, 3}, {0, 1}, {4, 3}, {5, 2}, {2, 1}, {3, 0}});
+  problem.element = ElementModel::kAxial;
+  problem.material.tensile_modulus_mpa = 1e4;
+  problem.material.tensile_strength_mpa = 25;
+  for (RadiusBounds& b : problem.bounds) b = {std::sqrt(0.1 / pi), 5};
+  for (int i = 0; i < 6; ++i) problem.fixed[i] = {i >= 4, true, i >= 4};
+  problem.load_cases = {load_at(problem, 1, {0, 0, -100})};
+  problem.load_cases[0].force_n[3] = {0, 0, -100};
+  const OptimizeResult r = size_only(problem);
+  EXPECT_EQ(r.reason, Termination::kOptimal);
+  EXPECT_NEAR(0.1 * r.size.volume_mm3, 1593.2, 0.05);
+  EXPECT_NEAR(r.evaluation.max_axial_ratio, 1, 1e-5);
 }
 
 // The same truss in mm and N, and in another consistent system with lengths and forces a thousandfold.

@@ -19,25 +19,30 @@ constexpr double kBaseCut = -0.75;  // of the vertical half axis: below it the e
 // The icosahedron's faces divided into frequency^2 triangles each, pushed to the unit sphere.
 void geodesic(int frequency, Frame& frame) {
   const double g = std::numbers::phi;
-  const Vector3d corners[12] = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
-                                {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-  const int faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                            {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                            {3, 8, 9},  {4, 9, 5},  {2, 4, 11},  {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+  const Vector3d corners[12] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                                {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+  const int faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
+                            {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
+                            {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
+                            {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
   std::map<std::array<long, 3>, int> known;
   const auto node = [&](const Vector3d& p) {
-    const std::array<long, 3> key{std::lround(p.x() * 1e6), std::lround(p.y() * 1e6), std::lround(p.z() * 1e6)};
+    const std::array<long, 3> key{std::lround(p.x() * 1e6), std::lround(p.y() * 1e6),
+                                  std::lround(p.z() * 1e6)};
     const auto [at, added] = known.emplace(key, static_cast<int>(frame.nodes_mm.size()));
     if (added) frame.nodes_mm.push_back(p.normalized());
     return at->second;
   };
   for (const auto& face : faces) {
     const Vector3d &a = corners[face[0]], &b = corners[face[1]], &c = corners[face[2]];
-    const auto grid = [&](int i, int j) { return node(a + (b - a) * i / frequency + (c - a) * j / frequency); };
+    const auto grid = [&](int i, int j) {
+      return node(a + (b - a) * i / frequency + (c - a) * j / frequency);
+    };
     for (int i = 0; i < frequency; ++i)
       for (int j = 0; i + j < frequency; ++j) {
         frame.skin_triangles.push_back({grid(i, j), grid(i + 1, j), grid(i, j + 1)});
-        if (i + j + 1 < frequency) frame.skin_triangles.push_back({grid(i + 1, j), grid(i + 1, j + 1), grid(i, j + 1)});
+        if (i + j + 1 < frequency)
+          frame.skin_triangles.push_back({grid(i + 1, j), grid(i + 1, j + 1), grid(i, j + 1)});
       }
   }
 }
@@ -54,7 +59,8 @@ void add_internal_nodes(Frame& frame, int count, const Vector3d& half_axes, doub
   std::mt19937 generator(7);
   const auto uniform = [&] { return static_cast<double>(generator()) / 4294967296.0; };
   const auto inside = [&](const Vector3d& p) {
-    return ((p - Vector3d(0, 0, centre_z)).array() / (0.9 * half_axes.array())).square().sum() < 1 && p.z() > 3;
+    return ((p - Vector3d(0, 0, centre_z)).array() / (0.9 * half_axes.array())).square().sum() < 1 &&
+           p.z() > 3;
   };
   const std::size_t skin = frame.nodes_mm.size();
   for (int i = 0; i < count; ++i) {
@@ -84,7 +90,8 @@ void add_internal_struts(Frame& frame, int neighbours) {
       if (k != i) others.emplace_back((frame.nodes_mm[i] - frame.nodes_mm[k]).norm(), k);
     std::sort(others.begin(), others.end());
     for (int q = 0; q < neighbours && q < static_cast<int>(others.size()); ++q)
-      if (known.insert(std::minmax(i, others[q].second)).second) frame.struts.push_back({i, others[q].second, false});
+      if (known.insert(std::minmax(i, others[q].second)).second)
+        frame.struts.push_back({i, others[q].second, false});
   }
 }
 
@@ -129,7 +136,8 @@ FrameProblem make_egg(const Egg& egg) {
   problem.skin_weight_n.assign(nodes, 0);
   for (const auto& t : frame.skin_triangles) {
     const Vector3d &a = frame.nodes_mm[t[0]], &b = frame.nodes_mm[t[1]], &c = frame.nodes_mm[t[2]];
-    const double weight = 0.5 * (b - a).cross(c - a).norm() * egg.skin_thickness_mm * problem.material.weight_density_n_mm3();
+    const double weight =
+        0.5 * (b - a).cross(c - a).norm() * egg.skin_thickness_mm * problem.material.weight_density_n_mm3();
     for (int i : t) problem.skin_weight_n[i] += weight / 3;
     problem.skin_mass.centroid_mm += weight * (a + b + c) / 3;
     problem.skin_mass.weight_n += weight;

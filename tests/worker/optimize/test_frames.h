@@ -8,10 +8,11 @@ namespace skinframe::testing {
 
 Material pa_plastic();  // Table 1, P-1
 
-// An ellipsoid cut flat at z = 0: a geodesic skin of 10 f^2 + 2 nodes, internal nodes spread by best candidates, each joined
-// to its nearest neighbours. Stands on its flat: z of the base is fixed, and the least that stops motion in the plane.
+// An ellipsoid cut flat at z = 0: a geodesic skin of 10 f^2 + 2 nodes, internal nodes spread by best
+// candidates, each joined to its nearest neighbours. Stands on its flat: z of the base is fixed, and the
+// least that stops motion in the plane.
 struct Egg {
-  int frequency = 3;        // skin nodes: 10 f^2 + 2
+  int frequency = 3;  // skin nodes: 10 f^2 + 2
   int internal_nodes = 20;
   int neighbours = 8;
   double height_mm = 180;

@@ -44,7 +44,8 @@ TEST(ProblemFile, WhatIsWrittenIsReadBack) {
   const json document = to_json(problem, {1, 2, 3, 4, 5, 6}, {std::vector<Eigen::Vector3d>(4, {1, 2, 3})});
   const auto again = parse_problem(json::parse(document.dump()));
   ASSERT_TRUE(again.ok()) << again.error().message;
-  EXPECT_EQ(to_json(again->problem, {1, 2, 3, 4, 5, 6}, {std::vector<Eigen::Vector3d>(4, {1, 2, 3})}), document);
+  EXPECT_EQ(to_json(again->problem, {1, 2, 3, 4, 5, 6}, {std::vector<Eigen::Vector3d>(4, {1, 2, 3})}),
+            document);
   EXPECT_EQ(document["struts"][4]["radius_mm"], 5);
   EXPECT_EQ(document["load_cases"][0]["displacements_mm"][3], json({1, 2, 3}));
 }
@@ -71,19 +72,29 @@ INSTANTIATE_TEST_SUITE_P(
         BadField{[](json& d) { d["struts"][3]["b"] = -1; }, "struts[3].b: -1 is not a node (0..3)"},
         BadField{[](json& d) { d["struts"][0]["a"] = 1.5; }, "struts[0].a: must be a whole number"},
         BadField{[](json& d) { d["struts"][2]["b"] = d["struts"][2]["a"]; }, "struts[2]"},
-        BadField{[](json& d) { d["nodes"][2] = {1, 2}; }, "nodes[2]: must be a list of 3 numbers"},
+        BadField{[](json& d) {
+                   d["nodes"][2] = {1, 2};
+                 },
+                 "nodes[2]: must be a list of 3 numbers"},
         BadField{[](json& d) { d["nodes"][2][1] = "x"; }, "nodes[2][1]: must be a number"},
         BadField{[](json& d) { d["nodes"] = json::array(); }, "nodes: there are none"},
         BadField{[](json& d) { d.erase("struts"); }, "struts: is missing"},
-        BadField{[](json& d) { d["struts"][1].erase("max_radius_mm"); }, "struts[1].max_radius_mm: is missing"},
+        BadField{[](json& d) { d["struts"][1].erase("max_radius_mm"); },
+                 "struts[1].max_radius_mm: is missing"},
         BadField{[](json& d) { d["mechanics"] = "beam"; }, "mechanics: \"beam\" is not built"},
-        BadField{[](json& d) { d["material"]["density_g_cm3"] = nullptr; }, "material.density_g_cm3: must be a number"},
+        BadField{[](json& d) { d["material"]["density_g_cm3"] = nullptr; },
+                 "material.density_g_cm3: must be a number"},
         BadField{[](json& d) { d["fixed"][0]["axes"] = "xw"; }, "fixed[0].axes: 'w' is not an axis"},
         BadField{[](json& d) { d["fixed"][1]["node"] = 4; }, "fixed[1].node: 4 is not a node"},
-        BadField{[](json& d) { d["load_cases"][0]["forces"][0]["force_n"] = {1, 2, nullptr}; },
+        BadField{[](json& d) {
+                   d["load_cases"][0]["forces"][0]["force_n"] = {1, 2, nullptr};
+                 },
                  "load_cases[0].forces[0].force_n[2]: must be a number"},
         BadField{[](json& d) { d["displacement_limit_mm"] = -1; }, "displacement_limit_mm: must be positive"},
-        BadField{[](json& d) { d["stages"] = {"size", "shape"}; }, "stages[1]: \"shape\" is not a stage"},
+        BadField{[](json& d) {
+                   d["stages"] = {"size", "shape"};
+                 },
+                 "stages[1]: \"shape\" is not a stage"},
         BadField{[](json& d) { d["stages"] = {"geometry"}; }, "stages: \"size\" must be among them"},
         BadField{[](json& d) { d["order"] = "any"; }, "order: \"any\""},
         BadField{[](json& d) { d["free_nodes"] = {0}; }, "free_nodes: node 0 is fixed"},
