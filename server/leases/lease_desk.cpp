@@ -45,7 +45,8 @@ void LeaseDesk::withdraw(Ticket ticket) {
 
 void LeaseDesk::job_queued() {
   const std::lock_guard lock(mutex_);
-  if (!waiters_.empty()) schedule_serve();
+  // While one is being served the list may be empty, and that one may have looked too early for this job.
+  if (serving_ || !waiters_.empty()) schedule_serve();
 }
 
 // With mutex_ held.

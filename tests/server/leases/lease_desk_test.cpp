@@ -71,6 +71,16 @@ TEST_F(LeaseDeskTest, WaitingWorkersGetNewJobsInTheOrderOfTheirAsking) {
   EXPECT_EQ((*second.get())->job.job_id(), "b");
 }
 
+// The worker's look into the store and the job's commit meet in every order.
+TEST_F(LeaseDeskTest, NoJobIsOverlookedBetweenTheLookAndTheWait) {
+  for (int round = 0; round < 500; ++round) {
+    auto waiting = ask("w", seconds(10));
+    submit("job-" + std::to_string(round));
+    ASSERT_EQ(waiting.wait_for(seconds(10)), std::future_status::ready) << round;
+    ASSERT_TRUE(waiting.get()->has_value());
+  }
+}
+
 TEST_F(LeaseDeskTest, AWaitEndsWhenItsTimeIsOver) {
   auto waiting = ask("w", seconds(10));
   clock_.advance(seconds(10) - Milliseconds(1));
