@@ -24,7 +24,8 @@ namespace {
 constexpr double kBandVoxels = 3.0;
 constexpr double kMaxSurfaceSquares = 3e6;  // as in build_skin.cpp: some 600 MB while the grid is made
 constexpr double kVoxelInRadii = 0.6;       // of the thinnest strut
-constexpr double kThinningInVoxels = 0.1;   // tolerance of the thinning
+constexpr double kThinningInVoxels =
+    0.3;  // of the thinning: a sum over planes, so the surface itself stays much nearer
 
 Result<double> choose_voxel(const ExportOptions& options, const Skin& skin,
                             const std::vector<double>& radii_mm, double area_mm2) {
