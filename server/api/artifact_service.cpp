@@ -20,8 +20,8 @@ grpc::ServerUnaryReactor* ArtifactService::Stat(grpc::CallbackServerContext* con
   });
 }
 
-grpc::ServerReadReactor<v1::UploadArtifactRequest>* ArtifactService::Upload(grpc::CallbackServerContext*,
-                                                                            v1::UploadArtifactResponse* response) {
+grpc::ServerReadReactor<v1::UploadArtifactRequest>* ArtifactService::Upload(
+    grpc::CallbackServerContext*, v1::UploadArtifactResponse* response) {
   return new UploadCall(parts_.artifacts, parts_.executor, *response);
 }
 

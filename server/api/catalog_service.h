@@ -11,7 +11,8 @@ class CatalogService final : public v1::CatalogService::CallbackService {
  public:
   explicit CatalogService(const Catalog& catalog) : catalog_(catalog) {}
 
-  grpc::ServerUnaryReactor* ListPrinters(grpc::CallbackServerContext* context, const v1::ListPrintersRequest* request,
+  grpc::ServerUnaryReactor* ListPrinters(grpc::CallbackServerContext* context,
+                                         const v1::ListPrintersRequest* request,
                                          v1::ListPrintersResponse* response) override;
   grpc::ServerUnaryReactor* ListMaterials(grpc::CallbackServerContext* context,
                                           const v1::ListMaterialsRequest* request,

@@ -12,7 +12,8 @@ namespace {
 constexpr std::int64_t kChunkBytes = 256 * 1024;
 }
 
-DownloadCall::DownloadCall(ArtifactStore& artifacts, Executor& executor, const v1::DownloadArtifactRequest& request)
+DownloadCall::DownloadCall(ArtifactStore& artifacts, Executor& executor,
+                           const v1::DownloadArtifactRequest& request)
     : artifacts_(artifacts), executor_(executor) {
   executor_.post([this, request] {
     if (auto status = open(request); !status.ok()) return Finish(to_grpc(status));
@@ -28,7 +29,8 @@ absl::Status DownloadCall::open(const v1::DownloadArtifactRequest& request) {
   const auto size = file_.size();
   if (!size.ok()) return size.status();
   if (request.offset() < 0 || request.offset() > *size) {
-    return absl::OutOfRangeError(fmt::format("offset is {}, the artifact has {} bytes", request.offset(), *size));
+    return absl::OutOfRangeError(
+        fmt::format("offset is {}, the artifact has {} bytes", request.offset(), *size));
   }
   at_ = request.offset();
   end_ = request.length() == 0 ? *size : at_ + std::min(request.length(), *size - at_);
@@ -40,7 +42,8 @@ void DownloadCall::send_next() {
   const auto want = static_cast<std::size_t>(std::min(kChunkBytes, end_ - at_));
   auto bytes = file_.read_at(at_, want);
   if (!bytes.ok()) return Finish(to_grpc(bytes.status()));
-  if (bytes->size() != want) return Finish(to_grpc(absl::InternalError("an artifact became shorter while it was read")));
+  if (bytes->size() != want)
+    return Finish(to_grpc(absl::InternalError("an artifact became shorter while it was read")));
   at_ += static_cast<std::int64_t>(want);
   message_.set_chunk(*std::move(bytes));
   StartWrite(&message_);

@@ -17,7 +17,8 @@ namespace {
 
 constexpr int kDefaultPage = 50;
 constexpr int kLargestPage = 500;
-constexpr std::size_t kLargestPageBytes = std::size_t{3} << 20;  // below gRPC's default limit of 4 MiB a message
+constexpr std::size_t kLargestPageBytes = std::size_t{3}
+                                          << 20;  // below gRPC's default limit of 4 MiB a message
 constexpr char kRetryAfterMs[] = "1000";
 
 // A page token is the ordinal of the page's last job. 0: the first page; -1: not one of ours.
@@ -51,8 +52,10 @@ absl::Status JobService::submit(grpc::CallbackServerContext& context, const v1::
     for (std::string& check : checks_that_hold(request.spec())) response.add_checks(std::move(check));
     return absl::OkStatus();
   }
-  auto created = parts_.store.create(decide_submit(new_record(request), parts_.clock.now()), parts_.queue_limit);
-  if (absl::IsResourceExhausted(created.status())) context.AddTrailingMetadata("retry-after-ms", kRetryAfterMs);
+  auto created =
+      parts_.store.create(decide_submit(new_record(request), parts_.clock.now()), parts_.queue_limit);
+  if (absl::IsResourceExhausted(created.status()))
+    context.AddTrailingMetadata("retry-after-ms", kRetryAfterMs);
   if (!created.ok()) return created.status();
   *response.mutable_job() = std::move(created->record.job);
   if (response.job().state() == v1::JOB_STATE_QUEUED) {
@@ -79,8 +82,8 @@ JobRecord JobService::new_record(const v1::SubmitJobRequest& request) {
   return record;
 }
 
-grpc::ServerUnaryReactor* JobService::GetJob(grpc::CallbackServerContext* context, const v1::GetJobRequest* request,
-                                             v1::Job* response) {
+grpc::ServerUnaryReactor* JobService::GetJob(grpc::CallbackServerContext* context,
+                                             const v1::GetJobRequest* request, v1::Job* response) {
   return answer_on(parts_.executor, context, [=, this]() -> absl::Status {
     auto record = parts_.store.get(request->job_id());
     if (record.ok()) *response = std::move(record->job);
@@ -89,15 +92,15 @@ grpc::ServerUnaryReactor* JobService::GetJob(grpc::CallbackServerContext* contex
 }
 
 grpc::ServerUnaryReactor* JobService::ListJobs(grpc::CallbackServerContext* context,
-                                               const v1::ListJobsRequest* request, v1::ListJobsResponse* response) {
+                                               const v1::ListJobsRequest* request,
+                                               v1::ListJobsResponse* response) {
   return answer_on(parts_.executor, context, [=, this] { return list(*request, *response); });
 }
 
 absl::Status JobService::list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response) {
   if (request.page_size() < 0 || request.page_size() > kLargestPage) {
-    return absl::InvalidArgumentError(
-        fmt::format("page_size is {}, must be within 1 .. {}, or 0 for {}", request.page_size(), kLargestPage,
-                    kDefaultPage));
+    return absl::InvalidArgumentError(fmt::format("page_size is {}, must be within 1 .. {}, or 0 for {}",
+                                                  request.page_size(), kLargestPage, kDefaultPage));
   }
   ListQuery query;
   query.limit = request.page_size() == 0 ? kDefaultPage : request.page_size();

@@ -43,9 +43,9 @@ grpc::ServerUnaryReactor* LeaseCall::start(const Parts& parts, const v1::LeaseRe
 }
 
 void LeaseCall::wait_at_desk(const v1::LeaseRequest& request) {
-  const auto ticket = parts_.desk.ask(
-      request.worker_id(), request.instance_id(), wait_of(request, parts_.policy),
-      [this](const absl::StatusOr<std::optional<JobRecord>>& leased) { answer(leased); });
+  const auto ticket =
+      parts_.desk.ask(request.worker_id(), request.instance_id(), wait_of(request, parts_.policy),
+                      [this](const absl::StatusOr<std::optional<JobRecord>>& leased) { answer(leased); });
   bool cancelled = false;
   {
     const std::lock_guard lock(mutex_);

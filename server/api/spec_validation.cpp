@@ -45,17 +45,19 @@ bool outside(double value, double low, double high) { return !(value >= low && v
 absl::Status check_input(const v1::JobSpec& spec) {
   if (spec.input_case() == v1::JobSpec::kFrameProblemSha256) return not_built("frame_problem_sha256");
   if (spec.input_case() != v1::JobSpec::kMeshSha256) return invalid("spec.mesh_sha256 is missing");
-  if (!is_sha256(spec.mesh_sha256())) return invalid("spec.mesh_sha256 must be 64 lower-case hexadecimal digits");
+  if (!is_sha256(spec.mesh_sha256()))
+    return invalid("spec.mesh_sha256 must be 64 lower-case hexadecimal digits");
   if (spec.mesh_name().size() > kLongestName) {
-    return invalid("spec.mesh_name has {} bytes, at most {} are allowed", spec.mesh_name().size(), kLongestName);
+    return invalid("spec.mesh_name has {} bytes, at most {} are allowed", spec.mesh_name().size(),
+                   kLongestName);
   }
   return absl::OkStatus();
 }
 
 absl::Status check_printers(const v1::JobSpec& spec, const Catalog& catalog) {
   if (spec.printers_size() < 1 || spec.printers_size() > kMostPrinters) {
-    return invalid("spec.printers has {} entries, must have 1 .. {}; known: {}", spec.printers_size(), kMostPrinters,
-                   catalog.printer_ids());
+    return invalid("spec.printers has {} entries, must have 1 .. {}; known: {}", spec.printers_size(),
+                   kMostPrinters, catalog.printer_ids());
   }
   std::set<std::string> seen;
   for (const v1::PrinterRequest& printer : spec.printers()) {
@@ -72,10 +74,12 @@ absl::Status check_printers(const v1::JobSpec& spec, const Catalog& catalog) {
   return absl::OkStatus();
 }
 
-absl::Status check_vector(const std::string& field, const v1::Vec3& vector, double limit, std::string_view unit) {
-  if (outside(vector.x(), -limit, limit) || outside(vector.y(), -limit, limit) || outside(vector.z(), -limit, limit)) {
-    return invalid("{} is ({}, {}, {}), each component must be within -{} .. {} {}", field, vector.x(), vector.y(),
-                   vector.z(), limit, limit, unit);
+absl::Status check_vector(const std::string& field, const v1::Vec3& vector, double limit,
+                          std::string_view unit) {
+  if (outside(vector.x(), -limit, limit) || outside(vector.y(), -limit, limit) ||
+      outside(vector.z(), -limit, limit)) {
+    return invalid("{} is ({}, {}, {}), each component must be within -{} .. {} {}", field, vector.x(),
+                   vector.y(), vector.z(), limit, limit, unit);
   }
   return absl::OkStatus();
 }
@@ -92,16 +96,20 @@ absl::Status check_load(const v1::Load& load, int index) {
       }
       break;
     case v1::Load::kPointMm:
-      if (auto status = check_vector(field + ".point_mm", load.point_mm(), kFarthestPoint_mm, "mm"); !status.ok()) {
+      if (auto status = check_vector(field + ".point_mm", load.point_mm(), kFarthestPoint_mm, "mm");
+          !status.ok()) {
         return status;
       }
       break;
-    case v1::Load::WHERE_NOT_SET: return invalid("{} needs a place or a point_mm", field);
+    case v1::Load::WHERE_NOT_SET:
+      return invalid("{} needs a place or a point_mm", field);
   }
   if (!load.has_force_n()) return invalid("{}.force_n is missing", field);
-  if (auto status = check_vector(field + ".force_n", load.force_n(), kLargestForce_n, "N"); !status.ok()) return status;
+  if (auto status = check_vector(field + ".force_n", load.force_n(), kLargestForce_n, "N"); !status.ok())
+    return status;
   if (outside(load.radius_mm(), 0, 1000)) {
-    return invalid("{}.radius_mm is {}, must be within 0 .. 1000 (0: the default of 5)", field, load.radius_mm());
+    return invalid("{}.radius_mm is {}, must be within 0 .. 1000 (0: the default of 5)", field,
+                   load.radius_mm());
   }
   return absl::OkStatus();
 }
@@ -137,7 +145,8 @@ absl::Status check_options(const v1::JobOptions& o) {
       check_range("skin_nodes", o.has_skin_nodes(), o.skin_nodes(), 12, 20000),
       check_range("internal_nodes", o.has_internal_nodes(), o.internal_nodes(), 0, 20000),
       check_range("voxel_mm", o.has_voxel_mm(), o.voxel_mm(), 0.02, 5),
-      check_range("displacement_limit_mm", o.has_displacement_limit_mm(), o.displacement_limit_mm(), 0.001, 100),
+      check_range("displacement_limit_mm", o.has_displacement_limit_mm(), o.displacement_limit_mm(), 0.001,
+                  100),
   };
   for (const absl::Status& status : all) {
     if (!status.ok()) return status;
@@ -156,7 +165,8 @@ absl::Status check_labels(const v1::JobSpec& spec) {
       return invalid("label key \"{}\" must be 1 .. 63 of [a-z0-9._-]", key);
     }
     if (value.size() > kLongestName) {
-      return invalid("the value of label \"{}\" has {} bytes, at most {} are allowed", key, value.size(), kLongestName);
+      return invalid("the value of label \"{}\" has {} bytes, at most {} are allowed", key, value.size(),
+                     kLongestName);
     }
   }
   return absl::OkStatus();
@@ -169,7 +179,8 @@ absl::Status check_schedule(const v1::JobSpec& spec) {
   if (!spec.has_deadline()) return absl::OkStatus();
   const auto& deadline = spec.deadline();
   const bool positive = deadline.seconds() > 0 || (deadline.seconds() == 0 && deadline.nanos() >= 1'000'000);
-  if (!positive || deadline.seconds() > kLongestDeadline_s || deadline.nanos() < 0 || deadline.nanos() > 999'999'999) {
+  if (!positive || deadline.seconds() > kLongestDeadline_s || deadline.nanos() < 0 ||
+      deadline.nanos() > 999'999'999) {
     return invalid("spec.deadline must be within 0.001 s .. {} s", kLongestDeadline_s);
   }
   return absl::OkStatus();

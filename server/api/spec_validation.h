@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a job can be accepted as it is written. Messages name the field as the client wrote it, its value and
-// the valid range, and list the known ids.
+// Whether a job can be accepted as it is written. Messages name the field as the client wrote it, its value
+// and the valid range, and list the known ids.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@
 
 namespace skinframe::server {
 
-// INVALID_ARGUMENT, or UNIMPLEMENTED for what the API has and this version does not build. Meshes are not opened:
-// what is wrong inside one is the worker's to say.
+// INVALID_ARGUMENT, or UNIMPLEMENTED for what the API has and this version does not build. Meshes are not
+// opened: what is wrong inside one is the worker's to say.
 absl::Status validate_spec(const v1::JobSpec& spec, const Catalog& catalog);
 
 // What validate_spec has found good, a sentence each.

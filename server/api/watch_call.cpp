@@ -103,7 +103,9 @@ void WatchCall::stop(const absl::Status& status) {
   end(status);
 }
 
-void WatchCall::server_stops() { stop(absl::UnavailableError("the server stops; watch again from the last sequence")); }
+void WatchCall::server_stops() {
+  stop(absl::UnavailableError("the server stops; watch again from the last sequence"));
+}
 
 void WatchCall::OnCancel() { stop(absl::CancelledError("the client hung up")); }
 

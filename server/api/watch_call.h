@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One WatchJob stream. It reads the store page by page from its own sequence number and writes one event at a time;
-// when there is nothing more it rests until the hub wakes it. So it holds one page of memory however slow its
-// client is, and it can neither miss nor repeat an event.
+// One WatchJob stream. It reads the store page by page from its own sequence number and writes one event at a
+// time; when there is nothing more it rests until the hub wakes it. So it holds one page of memory however
+// slow its client is, and it can neither miss nor repeat an event.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,8 @@ class WatchCall final : public grpc::ServerWriteReactor<v1::JobEvent>,
   void OnDone() override;
 
  private:
-  // Who may act: in kReading the executor's task, in kWriting gRPC's OnWriteDone, in kResting whoever comes first.
+  // Who may act: in kReading the executor's task, in kWriting gRPC's OnWriteDone, in kResting whoever comes
+  // first.
   enum class Phase { kReading, kWriting, kResting, kEnded };
 
   WatchCall(const Parts& parts, std::string job_id, std::int64_t after_sequence)

@@ -15,7 +15,8 @@ namespace {
 
 // A late worker is harmless, and still worth a line: it tells of a partition or of a lease that is too short.
 absl::Status log_refusal(const absl::Status& status, const std::string& job_id, const char* call) {
-  if (absl::IsAborted(status)) spdlog::warn("job={} {} refused: {}", job_id, call, std::string(status.message()));
+  if (absl::IsAborted(status))
+    spdlog::warn("job={} {} refused: {}", job_id, call, std::string(status.message()));
   return status;
 }
 

@@ -30,7 +30,8 @@ absl::Status check_printers(const Results& printers) {
       return invalid("printers.printer_id must have 1 .. {} bytes", kLongestId);
     }
     if (printer.detail().size() > kLongestDetail) {
-      return invalid("printers.detail has {} bytes, at most {} are allowed", printer.detail().size(), kLongestDetail);
+      return invalid("printers.detail has {} bytes, at most {} are allowed", printer.detail().size(),
+                     kLongestDetail);
     }
   }
   return absl::OkStatus();
@@ -79,7 +80,8 @@ absl::Status validate_complete(const v1::CompleteRequest& request) {
   if (state == v1::JOB_STATE_SUCCEEDED && reason != v1::REASON_UNSPECIFIED && reason != v1::REASON_PARTIAL) {
     return invalid("reason with SUCCEEDED must be none or PARTIAL");
   }
-  if (state == v1::JOB_STATE_FAILED && reason == v1::REASON_UNSPECIFIED) return invalid("FAILED needs a reason");
+  if (state == v1::JOB_STATE_FAILED && reason == v1::REASON_UNSPECIFIED)
+    return invalid("FAILED needs a reason");
   const bool attempt_failed = reason == v1::REASON_CRASHED || reason == v1::REASON_OUT_OF_MEMORY;
   if (request.retryable() && !(state == v1::JOB_STATE_FAILED && attempt_failed)) {
     return invalid("retryable needs FAILED with CRASHED or OUT_OF_MEMORY");
@@ -90,7 +92,8 @@ absl::Status validate_complete(const v1::CompleteRequest& request) {
   if (request.files_size() > kMostFiles) return invalid("files has more than {} entries", kMostFiles);
   std::set<std::string_view> paths;
   for (const v1::ResultFile& file : request.files()) {
-    if (!is_safe_path(file.path())) return invalid("files.path \"{}\" is not a plain relative path", file.path());
+    if (!is_safe_path(file.path()))
+      return invalid("files.path \"{}\" is not a plain relative path", file.path());
     if (!is_sha256(file.sha256())) return invalid("files.sha256 of \"{}\" is not a SHA-256", file.path());
     if (!paths.insert(file.path()).second) return invalid("files.path \"{}\" is there twice", file.path());
   }
@@ -102,11 +105,12 @@ absl::Status files_are_there(const v1::CompleteRequest& request, const ArtifactS
     const auto facts = artifacts.stat(file.sha256());
     if (!facts.ok()) return facts.status();
     if (!facts->complete) {
-      return absl::FailedPreconditionError(fmt::format("file \"{}\" ({}) is not uploaded", file.path(), file.sha256()));
+      return absl::FailedPreconditionError(
+          fmt::format("file \"{}\" ({}) is not uploaded", file.path(), file.sha256()));
     }
     if (facts->size_bytes != file.size_bytes()) {
-      return absl::FailedPreconditionError(fmt::format("file \"{}\" has {} bytes, not {}", file.path(),
-                                                       facts->size_bytes, file.size_bytes()));
+      return absl::FailedPreconditionError(
+          fmt::format("file \"{}\" has {} bytes, not {}", file.path(), facts->size_bytes, file.size_bytes()));
     }
   }
   return absl::OkStatus();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Passes on what was committed: wakes the job's watchers and waiting workers, and writes the log line of each change
-// of state.
+// Passes on what was committed: wakes the job's watchers and waiting workers, and writes the log line of each
+// change of state.
 #pragma once
 
 #include <atomic>

@@ -19,7 +19,8 @@ absl::StatusOr<DataFolder> DataFolder::lock(const std::filesystem::path& folder)
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
-    return absl::PermissionDeniedError(fmt::format("cannot make the data folder {}: {}", folder.string(), error.message()));
+    return absl::PermissionDeniedError(
+        fmt::format("cannot make the data folder {}: {}", folder.string(), error.message()));
   }
   const auto file = folder / "lock";
   const int descriptor = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0640);
@@ -29,7 +30,8 @@ absl::StatusOr<DataFolder> DataFolder::lock(const std::filesystem::path& folder)
   }
   if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
     ::close(descriptor);
-    return absl::FailedPreconditionError(fmt::format("another server is using the data folder {}", folder.string()));
+    return absl::FailedPreconditionError(
+        fmt::format("another server is using the data folder {}", folder.string()));
   }
   return DataFolder(folder, descriptor);
 }
@@ -52,7 +54,8 @@ absl::Status write_file_at_once(const std::filesystem::path& file, const std::st
   }
   std::error_code error;
   std::filesystem::rename(temporary, file, error);
-  if (error) return absl::PermissionDeniedError(fmt::format("cannot write {}: {}", file.string(), error.message()));
+  if (error)
+    return absl::PermissionDeniedError(fmt::format("cannot write {}: {}", file.string(), error.message()));
   return absl::OkStatus();
 }
 

@@ -28,8 +28,8 @@ sigset_t block_stop_signals() {
   return signals;
 }
 
-// gRPC tells only here why a TLS handshake failed. Before the server listens its lines would stand beside our own
-// sentence, and say the same at ten times the length.
+// gRPC tells only here why a TLS handshake failed. Before the server listens its lines would stand beside our
+// own sentence, and say the same at ten times the length.
 void drop_grpc_line(gpr_log_func_args*) {}
 void log_grpc_line(gpr_log_func_args* line) {
   if (line->severity == GPR_LOG_SEVERITY_ERROR) spdlog::warn("grpc: {}", line->message);

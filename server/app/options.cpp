@@ -20,7 +20,8 @@ constexpr char kExamples[] =
     "      for the network, encrypted\n"
     "  skinframe-server --data DIR --listen 127.0.0.1:0 --port-file DIR/port\n"
     "      on a free port, written to the file once it listens\n"
-    "\nExit codes: 0 stopped by SIGTERM or SIGINT; 1 cannot run (port taken, folder in use or not writable); 2 wrong "
+    "\nExit codes: 0 stopped by SIGTERM or SIGINT; 1 cannot run (port taken, folder in use or not writable); "
+    "2 wrong "
     "usage.\n";
 
 Milliseconds from_seconds(double seconds) {
@@ -37,9 +38,11 @@ std::string text_of(const CLI::App& app, const CLI::Error& error, int& code) {
 }  // namespace
 
 absl::Status ServerOptions::validate() const {
-  if (data.empty()) return absl::InvalidArgumentError("--data DIR is missing: the folder for jobs and artifacts");
+  if (data.empty())
+    return absl::InvalidArgumentError("--data DIR is missing: the folder for jobs and artifacts");
   if (store.starts_with("postgresql:") || store.starts_with("postgres:")) {
-    return absl::UnimplementedError("--store postgresql is not built in this version of skinframe; use sqlite");
+    return absl::UnimplementedError(
+        "--store postgresql is not built in this version of skinframe; use sqlite");
   }
   if (store != "sqlite") {
     return absl::InvalidArgumentError(fmt::format("--store \"{}\" is unknown; known: sqlite", store));
@@ -48,13 +51,16 @@ absl::Status ServerOptions::validate() const {
     return absl::InvalidArgumentError("--tls-cert and --tls-key must be given together");
   }
   if (queue_limit < 1 || queue_limit > 1'000'000) {
-    return absl::InvalidArgumentError(fmt::format("--queue-limit is {}, must be within 1 .. 1000000", queue_limit));
+    return absl::InvalidArgumentError(
+        fmt::format("--queue-limit is {}, must be within 1 .. 1000000", queue_limit));
   }
-  if (auto status = policy.validate(); !status.ok()) return absl::InvalidArgumentError("--" + std::string(status.message()));
+  if (auto status = policy.validate(); !status.ok())
+    return absl::InvalidArgumentError("--" + std::string(status.message()));
   if (auto status = check_listen_address(listen); !status.ok()) return status;
   if (tls_cert.empty() && !allow_plaintext && !is_loopback(listen)) {
     return absl::InvalidArgumentError(fmt::format(
-        "--listen {} is reachable from the network: give --tls-cert and --tls-key, or --allow-plaintext", listen));
+        "--listen {} is reachable from the network: give --tls-cert and --tls-key, or --allow-plaintext",
+        listen));
   }
   return absl::OkStatus();
 }
@@ -63,17 +69,20 @@ std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* c
   ServerOptions options;
   double lease_seconds = static_cast<double>(options.policy.lease.count()) / 1000;
   double heartbeat_seconds = static_cast<double>(options.policy.heartbeat.count()) / 1000;
-  CLI::App app("Keeps the jobs of skinframe: takes them from clients, gives them to workers, keeps their results.",
-               "skinframe-server");
+  CLI::App app(
+      "Keeps the jobs of skinframe: takes them from clients, gives them to workers, keeps their results.",
+      "skinframe-server");
   app.footer(kExamples);
   app.set_version_flag("--version", "skinframe-server " SKINFRAME_VERSION);
   app.add_option("--listen", options.listen, "address:port; port 0 takes a free one")->capture_default_str();
-  app.add_option("--data", options.data, "folder for jobs and artifacts; made when absent; one server at a time");
+  app.add_option("--data", options.data,
+                 "folder for jobs and artifacts; made when absent; one server at a time");
   app.add_option("--tls-cert", options.tls_cert, "PEM certificate chain");
   app.add_option("--tls-key", options.tls_key, "PEM private key");
   app.add_flag("--allow-plaintext", options.allow_plaintext, "serve the network without TLS");
   app.add_option("--store", options.store, "where jobs are kept: sqlite (in --data)")->capture_default_str();
-  app.add_option("--lease-seconds", lease_seconds, "a worker silent for so long loses its job")->capture_default_str();
+  app.add_option("--lease-seconds", lease_seconds, "a worker silent for so long loses its job")
+      ->capture_default_str();
   app.add_option("--heartbeat-seconds", heartbeat_seconds, "how often workers report")->capture_default_str();
   app.add_option("--max-attempts", options.policy.max_attempts, "lost attempts after which a job FAILED")
       ->capture_default_str();

@@ -35,8 +35,8 @@ constexpr int kLargestMessageBytes = 4 << 20;
 constexpr const char* kServices[] = {"skinframe.v1.JobService", "skinframe.v1.ArtifactService",
                                      "skinframe.v1.CatalogService", "skinframe.v1.WorkerService"};
 
-// A partition is noticed within some 15 s on this side, and clients may ping every 5 s, calls or none, without
-// being thrown out. One port belongs to one server.
+// A partition is noticed within some 15 s on this side, and clients may ping every 5 s, calls or none,
+// without being thrown out. One port belongs to one server.
 void set_connection_rules(grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, 10'000);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 5'000);
@@ -62,7 +62,8 @@ absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> credentials(const Serve
 
 // In the order in which each needs those before it.
 struct Server::Rooms {
-  Rooms(DataFolder locked, const ServerOptions& options) : folder(std::move(locked)), policy(options.policy) {}
+  Rooms(DataFolder locked, const ServerOptions& options)
+      : folder(std::move(locked)), policy(options.policy) {}
 
   DataFolder folder;
   AttemptPolicy policy;
@@ -100,7 +101,8 @@ absl::Status Server::Rooms::open(const ServerOptions& options, const Clock& cloc
   reaper.emplace(*store, policy, clock.now());
   deadlines.emplace(*store);
 
-  const Parts parts{*store, *artifacts, catalog, hub, *desk, executor, clock, ids, policy, options.queue_limit};
+  const Parts parts{*store,   *artifacts, catalog, hub,    *desk,
+                    executor, clock,      ids,     policy, options.queue_limit};
   jobs.emplace(parts);
   files.emplace(parts);
   profiles.emplace(catalog);
@@ -125,9 +127,9 @@ absl::Status Server::Rooms::listen(const ServerOptions& options) {
   grpc_server = builder.BuildAndStart();
   if (grpc_server == nullptr || port == 0) {
     grpc_server.reset();
-    return absl::UnavailableError(fmt::format(
-        "cannot listen on {}: the address is in use or not this machine's{}", options.listen,
-        options.tls_cert.empty() ? "" : ", or the TLS files are not a certificate and its key"));
+    return absl::UnavailableError(
+        fmt::format("cannot listen on {}: the address is in use or not this machine's{}", options.listen,
+                    options.tls_cert.empty() ? "" : ", or the TLS files are not a certificate and its key"));
   }
   for (const char* service : kServices) grpc_server->GetHealthCheckService()->SetServingStatus(service, true);
   address = with_port(options.listen, port);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The whole server as a value: started when it exists, stopped when it goes. main() and the tests use the same one.
+// The whole server as a value: started when it exists, stopped when it goes. main() and the tests use the
+// same one.
 #pragma once
 
 #include <memory>
@@ -23,8 +24,8 @@ class Server {
 
   const std::string& address() const;  // host:port as bound
 
-  // Takes no new calls; ends watches and waiting leases with UNAVAILABLE; gives other calls a second. What was
-  // acknowledged is durable with or without it.
+  // Takes no new calls; ends watches and waiting leases with UNAVAILABLE; gives other calls a second. What
+  // was acknowledged is durable with or without it.
   void stop();
 
  private:

@@ -64,8 +64,8 @@ absl::StatusOr<ArtifactFacts> ArtifactStore::stat(std::string_view sha256) const
   return facts;
 }
 
-absl::StatusOr<std::unique_ptr<Upload>> ArtifactStore::upload(const std::string& sha256, std::int64_t size_bytes,
-                                                              std::int64_t offset) {
+absl::StatusOr<std::unique_ptr<Upload>> ArtifactStore::upload(const std::string& sha256,
+                                                              std::int64_t size_bytes, std::int64_t offset) {
   if (!is_sha256(sha256)) return not_a_sha256();
   if (size_bytes <= 0 || size_bytes > limits_.largest_bytes) {
     return absl::InvalidArgumentError(

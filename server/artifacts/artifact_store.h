@@ -4,9 +4,9 @@
 //   DIR/complete/ab/abcdef...   whole, hashed and durable; never written again
 //   DIR/partial/abcdef...       an upload under way or interrupted; continued from its end
 //
-// Guarantees: a name under complete/ appears only by a rename after its content was hashed and synced, so what is
-// there after a power cut is whole. One upload of a content at a time. A partial file that a power cut damaged
-// costs a repetition (its hash is wrong, nothing is kept), never a wrong artifact.
+// Guarantees: a name under complete/ appears only by a rename after its content was hashed and synced, so
+// what is there after a power cut is whole. One upload of a content at a time. A partial file that a power
+// cut damaged costs a repetition (its hash is wrong, nothing is kept), never a wrong artifact.
 #pragma once
 
 #include <cstdint>
@@ -43,8 +43,8 @@ class ArtifactStore {
   // INVALID_ARGUMENT: not a SHA-256.
   absl::StatusOr<ArtifactFacts> stat(std::string_view sha256) const;
 
-  // Begins or continues. Null: the artifact is complete already. INVALID_ARGUMENT: name or size. ABORTED: another
-  // upload of it is under way. FAILED_PRECONDITION: offset is neither 0 nor the end of the kept part.
+  // Begins or continues. Null: the artifact is complete already. INVALID_ARGUMENT: name or size. ABORTED:
+  // another upload of it is under way. FAILED_PRECONDITION: offset is neither 0 nor the end of the kept part.
   absl::StatusOr<std::unique_ptr<Upload>> upload(const std::string& sha256, std::int64_t size_bytes,
                                                  std::int64_t offset);
 

@@ -17,9 +17,12 @@ absl::Status errno_status(int error, const std::filesystem::path& file, std::str
   switch (error) {
     case ENOSPC:
     case EDQUOT:
-    case EFBIG: return absl::ResourceExhaustedError("no room on the server's disk (" + message + ")");
-    case ENOENT: return absl::NotFoundError(message);
-    default: return absl::InternalError(message);
+    case EFBIG:
+      return absl::ResourceExhaustedError("no room on the server's disk (" + message + ")");
+    case ENOENT:
+      return absl::NotFoundError(message);
+    default:
+      return absl::InternalError(message);
   }
 }
 

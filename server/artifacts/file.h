@@ -24,7 +24,8 @@ class File {
   File& operator=(const File&) = delete;
 
   static absl::StatusOr<File> open_to_read(const std::filesystem::path& file);
-  static absl::StatusOr<File> open_to_write(const std::filesystem::path& file);  // made when absent, kept when there
+  static absl::StatusOr<File> open_to_write(
+      const std::filesystem::path& file);  // made when absent, kept when there
 
   absl::StatusOr<std::int64_t> size() const;
   absl::Status truncate(std::int64_t size);

@@ -62,11 +62,12 @@ absl::Status Upload::hash_kept_part() {
 absl::Status Upload::append(std::string_view chunk) {
   const auto size = static_cast<std::int64_t>(chunk.size());
   if (size > store_.limits().largest_chunk_bytes) {
-    return absl::InvalidArgumentError(
-        fmt::format("a chunk of {} bytes is over the limit of {}", size, store_.limits().largest_chunk_bytes));
+    return absl::InvalidArgumentError(fmt::format("a chunk of {} bytes is over the limit of {}", size,
+                                                  store_.limits().largest_chunk_bytes));
   }
   if (written_ + size > size_bytes_) {
-    return absl::InvalidArgumentError(fmt::format("more than the {} bytes that the header says", size_bytes_));
+    return absl::InvalidArgumentError(
+        fmt::format("more than the {} bytes that the header says", size_bytes_));
   }
   if (absl::Status status = file_.write_at(written_, chunk); !status.ok()) return status;
   EVP_DigestUpdate(digest_.get(), chunk.data(), chunk.size());
@@ -76,12 +77,13 @@ absl::Status Upload::append(std::string_view chunk) {
 
 absl::Status Upload::finish() {
   if (written_ != size_bytes_) {
-    return absl::InvalidArgumentError(
-        fmt::format("the stream ended after {} of {} bytes, which are kept; resume there", written_, size_bytes_));
+    return absl::InvalidArgumentError(fmt::format(
+        "the stream ended after {} of {} bytes, which are kept; resume there", written_, size_bytes_));
   }
   if (const std::string actual = hex_digest(digest_.get()); actual != sha256_) {
     discard();
-    return absl::DataLossError(fmt::format("the content's SHA-256 is {}, not {}; nothing is kept", actual, sha256_));
+    return absl::DataLossError(
+        fmt::format("the content's SHA-256 is {}, not {}; nothing is kept", actual, sha256_));
   }
   if (absl::Status status = file_.sync(); !status.ok()) return status;
   const auto place = store_.complete_path(sha256_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One upload: hashes while it writes, and gives the file its name only when size and hash are right and the content
-// is durable. When it goes before that, what was written stays for the next one to continue.
+// One upload: hashes while it writes, and gives the file its name only when size and hash are right and the
+// content is durable. When it goes before that, what was written stays for the next one to continue.
 #pragma once
 
 #include <openssl/evp.h>
@@ -25,8 +25,8 @@ class Upload {
   // INVALID_ARGUMENT: the chunk is over the limit, or goes beyond the size. RESOURCE_EXHAUSTED: no room.
   absl::Status append(std::string_view chunk);
 
-  // DATA_LOSS: the content's hash is another (nothing is kept). INVALID_ARGUMENT: bytes are missing (what came is
-  // kept). After OK the artifact is complete and durable.
+  // DATA_LOSS: the content's hash is another (nothing is kept). INVALID_ARGUMENT: bytes are missing (what
+  // came is kept). After OK the artifact is complete and durable.
   absl::Status finish();
 
  private:

@@ -95,8 +95,12 @@ Catalog::Catalog(std::vector<v1::PrinterProfile> printers, std::vector<v1::Mater
   sort_by_id(materials_);
 }
 
-const v1::PrinterProfile* Catalog::find_printer(std::string_view id) const { return find_by_id(printers_, id); }
-const v1::MaterialProfile* Catalog::find_material(std::string_view id) const { return find_by_id(materials_, id); }
+const v1::PrinterProfile* Catalog::find_printer(std::string_view id) const {
+  return find_by_id(printers_, id);
+}
+const v1::MaterialProfile* Catalog::find_material(std::string_view id) const {
+  return find_by_id(materials_, id);
+}
 std::string Catalog::printer_ids() const { return joined_ids(printers_); }
 std::string Catalog::material_ids() const { return joined_ids(materials_); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The printers and materials that the server knows. Immutable once made: profiles from the operator's files will
-// be further entries of the same vectors.
+// The printers and materials that the server knows. Immutable once made: profiles from the operator's files
+// will be further entries of the same vectors.
 #pragma once
 
 #include <string>

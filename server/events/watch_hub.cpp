@@ -24,7 +24,8 @@ void WatchHub::unsubscribe(const std::string& job_id, const Watcher* watcher) {
   const auto job = by_job_.find(job_id);
   if (job == by_job_.end()) return;
   auto& watchers = job->second;
-  const auto at = std::find_if(watchers.begin(), watchers.end(), [&](const auto& w) { return w.get() == watcher; });
+  const auto at =
+      std::find_if(watchers.begin(), watchers.end(), [&](const auto& w) { return w.get() == watcher; });
   if (at == watchers.end()) return;
   watchers.erase(at);
   --count_;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wakes whoever watches a job. A wake carries no event: the watcher reads the store from its own sequence number, at
-// its own pace. So no event can be lost or doubled on the way, a slow watcher holds nobody up, and each costs a few
-// bytes here.
+// Wakes whoever watches a job. A wake carries no event: the watcher reads the store from its own sequence
+// number, at its own pace. So no event can be lost or doubled on the way, a slow watcher holds nobody up, and
+// each costs a few bytes here.
 //
-// A watcher subscribes first and reads then: what is committed between the two wakes it once too often, never once
-// too few.
+// A watcher subscribes first and reads then: what is committed between the two wakes it once too often, never
+// once too few.
 #pragma once
 
 #include <cstddef>

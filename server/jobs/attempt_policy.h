@@ -22,12 +22,12 @@ struct AttemptPolicy {
   absl::Status validate() const;
 };
 
-// The rest after the n-th lost attempt (n >= 1): min(max_backoff, first_backoff 2^(n-1)), of which the upper half
-// is jittered, so that jobs that died together do not come back together. jitter in [0, 1).
+// The rest after the n-th lost attempt (n >= 1): min(max_backoff, first_backoff 2^(n-1)), of which the upper
+// half is jittered, so that jobs that died together do not come back together. jitter in [0, 1).
 Milliseconds backoff_after(int lost_attempts, double jitter, const AttemptPolicy& policy);
 
-// A number in [0, 1) that depends on the job and the attempt alone: jitter without a random generator, the same
-// again when a decision is taken twice.
+// A number in [0, 1) that depends on the job and the attempt alone: jitter without a random generator, the
+// same again when a decision is taken twice.
 double jitter_of(std::string_view job_id, int lost_attempts);
 
 }  // namespace skinframe::server

@@ -18,7 +18,8 @@ google::protobuf::Timestamp to_timestamp(Time time) {
 }
 
 Time from_timestamp(const google::protobuf::Timestamp& timestamp) {
-  return Time(seconds(timestamp.seconds()) + std::chrono::floor<Milliseconds>(nanoseconds(timestamp.nanos())));
+  return Time(seconds(timestamp.seconds()) +
+              std::chrono::floor<Milliseconds>(nanoseconds(timestamp.nanos())));
 }
 
 google::protobuf::Duration to_duration(Milliseconds duration) {

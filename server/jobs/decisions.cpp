@@ -22,7 +22,8 @@ v1::JobEvent event_at(Time now) {
   return event;
 }
 
-// Moves the record along the arrow and tells of it. An arrow that the table does not have is a defect of ours.
+// Moves the record along the arrow and tells of it. An arrow that the table does not have is a defect of
+// ours.
 void move_job(Change& change, Trigger trigger, v1::Reason reason, const std::string& detail, Time now) {
   v1::Job& job = change.record.job;
   const auto to = next_state(job.state(), trigger);
@@ -44,7 +45,8 @@ void move_job(Change& change, Trigger trigger, v1::Reason reason, const std::str
   change.events.push_back(std::move(event));
 }
 
-// Takes the results into the job, the newest of a printer in place of the one before; what is new becomes an event.
+// Takes the results into the job, the newest of a printer in place of the one before; what is new becomes an
+// event.
 template <class Results>
 void take_printer_results(Change& change, const Results& results, Time now) {
   v1::Job& job = change.record.job;
@@ -66,9 +68,9 @@ void take_printer_results(Change& change, const Results& results, Time now) {
 }
 
 absl::Status stale_token(const JobRecord& record, std::int64_t token) {
-  return absl::AbortedError(fmt::format(
-      "token {} is no longer the lease of job {}, which is {}; drop its results", token, record.job.job_id(),
-      state_name(record.job.state())));
+  return absl::AbortedError(
+      fmt::format("token {} is no longer the lease of job {}, which is {}; drop its results", token,
+                  record.job.job_id(), state_name(record.job.state())));
 }
 
 bool holds_lease(const JobRecord& record, std::int64_t token) {
@@ -82,7 +84,8 @@ std::string deadline_detail(const JobRecord& record) {
   return fmt::format("the deadline of {} s after submission passed", seconds);
 }
 
-// The attempt brought no result. Ends the job when it was to stop or has no attempt left; else queues it again.
+// The attempt brought no result. Ends the job when it was to stop or has no attempt left; else queues it
+// again.
 void lose_attempt(Change& change, v1::Reason reason, const std::string& why, Time now,
                   const AttemptPolicy& policy) {
   JobRecord& record = change.record;
@@ -179,7 +182,8 @@ Decision decide_complete(const JobRecord& record, const v1::CompleteRequest& req
     return change;
   }
   if (request.retryable()) {
-    const std::string why = request.detail().empty() ? std::string(reason_name(request.reason())) : request.detail();
+    const std::string why =
+        request.detail().empty() ? std::string(reason_name(request.reason())) : request.detail();
     lose_attempt(change, request.reason(), why, now, policy);
     return change;
   }
@@ -187,7 +191,8 @@ Decision decide_complete(const JobRecord& record, const v1::CompleteRequest& req
   *change.record.job.mutable_printers() = request.printers();  // all of them, in the worker's order
   *change.record.job.mutable_files() = request.files();
   const bool succeeded = request.state() == v1::JOB_STATE_SUCCEEDED;
-  move_job(change, succeeded ? Trigger::kSucceeded : Trigger::kFailed, request.reason(), request.detail(), now);
+  move_job(change, succeeded ? Trigger::kSucceeded : Trigger::kFailed, request.reason(), request.detail(),
+           now);
   return change;
 }
 
@@ -195,15 +200,16 @@ Decision decide_lease_expired(const JobRecord& record, Time now, const AttemptPo
   if (record.job.state() != v1::JOB_STATE_RUNNING || record.lease.expires > now) return std::nullopt;
   Change change{record, {}};
   lose_attempt(change, v1::REASON_CRASHED,
-               fmt::format("no heartbeat from worker {} before its lease ended", record.lease.worker_id), now, policy);
+               fmt::format("no heartbeat from worker {} before its lease ended", record.lease.worker_id), now,
+               policy);
   return change;
 }
 
 Decision decide_deadline(const JobRecord& record, Time now) {
   if (record.job.state() != v1::JOB_STATE_QUEUED || !deadline_passed(record, now)) return std::nullopt;
   Change change{record, {}};
-  move_job(change, Trigger::kDeadlinePassed, v1::REASON_TIMED_OUT, deadline_detail(record) + " while it was queued",
-           now);
+  move_job(change, Trigger::kDeadlinePassed, v1::REASON_TIMED_OUT,
+           deadline_detail(record) + " while it was queued", now);
   return change;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a call or a duty does to a job, as pure functions of the job as it stands: no I/O, no clock, no lock. The
-// store runs them inside its transaction, so nothing can come between the look and the change.
+// What a call or a duty does to a job, as pure functions of the job as it stands: no I/O, no clock, no lock.
+// The store runs them inside its transaction, so nothing can come between the look and the change.
 //
 // Each returns the change to make, nothing when all is as wished already, or the refusal for the caller.
 #pragma once
@@ -22,25 +22,26 @@ using Decision = absl::StatusOr<std::optional<Change>>;
 // A new job: QUEUED, with its first event. record holds id, spec, profiles, request id and digest.
 Change decide_submit(JobRecord record, Time now);
 
-// CancelJob. Queued: CANCELLED at once. Running: cancel_requested; heartbeats tell the worker. Ended: nothing.
+// CancelJob. Queued: CANCELLED at once. Running: cancel_requested; heartbeats tell the worker. Ended:
+// nothing.
 Decision decide_cancel(const JobRecord& record, Time now);
 
 // The worker named takes the queued job.
 Change decide_lease(const JobRecord& record, std::int64_t fencing_token, const std::string& worker_id,
                     const std::string& instance_id, Time now, const AttemptPolicy& policy);
 
-// A heartbeat of the token's holder prolongs the lease, and progress and printer results become events. ABORTED:
-// the token is no longer the job's. Once the job shall stop the lease is not prolonged any more: a worker that
-// does not obey loses it.
+// A heartbeat of the token's holder prolongs the lease, and progress and printer results become events.
+// ABORTED: the token is no longer the job's. Once the job shall stop the lease is not prolonged any more: a
+// worker that does not obey loses it.
 Decision decide_heartbeat(const JobRecord& record, const v1::HeartbeatRequest& request, Time now,
                           const AttemptPolicy& policy);
 
 // Whether the worker shall stop: cancelled, or past the deadline.
 bool must_stop(const JobRecord& record, Time now);
 
-// A completion by the token's holder. The same one again is nothing; ABORTED: the token is no longer the job's.
-// A finished result is accepted even when the job was to stop meanwhile. CANCELLED without anybody's wish, and a
-// retryable failure, are a lost attempt.
+// A completion by the token's holder. The same one again is nothing; ABORTED: the token is no longer the
+// job's. A finished result is accepted even when the job was to stop meanwhile. CANCELLED without anybody's
+// wish, and a retryable failure, are a lost attempt.
 Decision decide_complete(const JobRecord& record, const v1::CompleteRequest& request, Time now,
                          const AttemptPolicy& policy);
 
@@ -48,8 +49,8 @@ Decision decide_complete(const JobRecord& record, const v1::CompleteRequest& req
 // Nothing when the lease was prolonged meanwhile.
 Decision decide_lease_expired(const JobRecord& record, Time now, const AttemptPolicy& policy);
 
-// The deadline duty's: a queued job past its deadline is FAILED, TIMED_OUT. Nothing otherwise; a running one is
-// stopped through its heartbeat or its lease.
+// The deadline duty's: a queued job past its deadline is FAILED, TIMED_OUT. Nothing otherwise; a running one
+// is stopped through its heartbeat or its lease.
 Decision decide_deadline(const JobRecord& record, Time now);
 
 // DeleteJob: FAILED_PRECONDITION unless the job has ended.

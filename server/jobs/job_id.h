@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Job ids: 128 random bits as 32 lower-case hexadecimal digits. Nobody can guess another's job, and ids made by
-// several servers never meet.
+// Job ids: 128 random bits as 32 lower-case hexadecimal digits. Nobody can guess another's job, and ids made
+// by several servers never meet.
 #pragma once
 
 #include <string>
@@ -14,7 +14,8 @@ class IdGenerator {
   virtual std::string next() = 0;  // from any thread
 };
 
-// From the operating system's random numbers. Aborts the process when there are none: a predictable id is worse.
+// From the operating system's random numbers. Aborts the process when there are none: a predictable id is
+// worse.
 class RandomIds final : public IdGenerator {
  public:
   std::string next() override;

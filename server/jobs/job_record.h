@@ -33,14 +33,14 @@ struct JobRecord {
   std::vector<v1::PrinterProfile> printers;
   std::vector<v1::MaterialProfile> materials;
   std::optional<Time> deadline;
-  Time not_before{};           // a queued job is not leased earlier: the backoff after a lost attempt
-  int lost_attempts = 0;       // attempts that ended without a result
+  Time not_before{};      // a queued job is not leased earlier: the backoff after a lost attempt
+  int lost_attempts = 0;  // attempts that ended without a result
   Lease lease;
   std::string completion_digest;  // of the last accepted completion: tells its repetition from another one
 };
 
-// A record as it shall be, and the events that tell of it. The store numbers the events and writes both in one
-// transaction.
+// A record as it shall be, and the events that tell of it. The store numbers the events and writes both in
+// one transaction.
 struct Change {
   JobRecord record;
   std::vector<v1::JobEvent> events;  // time and body set; job_id and sequence are the store's

@@ -18,9 +18,9 @@ constexpr std::array kTransitions = {
     Transition{v1::JOB_STATE_RUNNING, Trigger::kDeadlinePassed, v1::JOB_STATE_FAILED},
 };
 
-constexpr std::array kTriggers = {Trigger::kLeased,         Trigger::kSucceeded, Trigger::kFailed,
-                                  Trigger::kAttemptLost,    Trigger::kAttemptsUsedUp,
-                                  Trigger::kCancelled,      Trigger::kDeadlinePassed};
+constexpr std::array kTriggers = {Trigger::kLeased,        Trigger::kSucceeded,      Trigger::kFailed,
+                                  Trigger::kAttemptLost,   Trigger::kAttemptsUsedUp, Trigger::kCancelled,
+                                  Trigger::kDeadlinePassed};
 
 }  // namespace
 
@@ -35,7 +35,8 @@ std::optional<v1::JobState> next_state(v1::JobState from, Trigger trigger) {
 }
 
 bool is_final(v1::JobState state) {
-  return state == v1::JOB_STATE_SUCCEEDED || state == v1::JOB_STATE_FAILED || state == v1::JOB_STATE_CANCELLED;
+  return state == v1::JOB_STATE_SUCCEEDED || state == v1::JOB_STATE_FAILED ||
+         state == v1::JOB_STATE_CANCELLED;
 }
 
 std::string_view state_name(v1::JobState state) {
@@ -55,13 +56,20 @@ std::string_view reason_name(v1::Reason reason) {
 
 std::string_view trigger_name(Trigger trigger) {
   switch (trigger) {
-    case Trigger::kLeased: return "leased";
-    case Trigger::kSucceeded: return "succeeded";
-    case Trigger::kFailed: return "failed";
-    case Trigger::kAttemptLost: return "attempt lost";
-    case Trigger::kAttemptsUsedUp: return "attempts used up";
-    case Trigger::kCancelled: return "cancelled";
-    case Trigger::kDeadlinePassed: return "deadline passed";
+    case Trigger::kLeased:
+      return "leased";
+    case Trigger::kSucceeded:
+      return "succeeded";
+    case Trigger::kFailed:
+      return "failed";
+    case Trigger::kAttemptLost:
+      return "attempt lost";
+    case Trigger::kAttemptsUsedUp:
+      return "attempts used up";
+    case Trigger::kCancelled:
+      return "cancelled";
+    case Trigger::kDeadlinePassed:
+      return "deadline passed";
   }
   return "unknown";
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The life of a job, as data. Every change of state in the server goes through next_state(); what is not in the
-// table cannot happen.
+// The life of a job, as data. Every change of state in the server goes through next_state(); what is not in
+// the table cannot happen.
 //
 //   state      who moves a job into it                       after a crash of the server
 //   QUEUED     SubmitJob; the lease reaper or a retryable    still queued: the row is the queue
 //              Complete when attempts are left
-//   RUNNING    Lease, with a new fencing token               still running: the worker's token is in the store, its
+//   RUNNING    Lease, with a new fencing token               still running: the worker's token is in the
+//   store, its
 //                                                            heartbeats go on; without them the lease expires
 //   SUCCEEDED  Complete by the token's holder                final
 //   FAILED     Complete, the lease reaper when attempts are  final
@@ -14,8 +15,8 @@
 //              lease reaper on a running one
 #pragma once
 
-#include <span>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "skinframe/v1/job.pb.h"
@@ -24,13 +25,13 @@ namespace skinframe::server {
 
 // What happens to a job. The name says who saw it.
 enum class Trigger {
-  kLeased,            // a worker took the job
-  kSucceeded,         // the worker completed it
-  kFailed,            // the worker completed it: the job itself failed, another attempt would not help
-  kAttemptLost,       // the attempt ended without a result, and attempts are left
-  kAttemptsUsedUp,    // the same, and none is left
-  kCancelled,         // the user's wish came true: at once when queued, by worker or lease end when running
-  kDeadlinePassed,    // found queued by the deadline duty, or stopped by the worker, or its lease ended
+  kLeased,          // a worker took the job
+  kSucceeded,       // the worker completed it
+  kFailed,          // the worker completed it: the job itself failed, another attempt would not help
+  kAttemptLost,     // the attempt ended without a result, and attempts are left
+  kAttemptsUsedUp,  // the same, and none is left
+  kCancelled,       // the user's wish came true: at once when queued, by worker or lease end when running
+  kDeadlinePassed,  // found queued by the deadline duty, or stopped by the worker, or its lease ended
 };
 
 struct Transition {
@@ -46,8 +47,8 @@ std::span<const Trigger> all_triggers();
 std::optional<v1::JobState> next_state(v1::JobState from, Trigger trigger);
 
 bool is_final(v1::JobState state);
-std::string_view state_name(v1::JobState state);     // "QUEUED"
-std::string_view reason_name(v1::Reason reason);     // "CRASHED"; "NONE" when unspecified
-std::string_view trigger_name(Trigger trigger);      // "lost attempt"
+std::string_view state_name(v1::JobState state);  // "QUEUED"
+std::string_view reason_name(v1::Reason reason);  // "CRASHED"; "NONE" when unspecified
+std::string_view trigger_name(Trigger trigger);   // "lost attempt"
 
 }  // namespace skinframe::server

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Something the server does again and again by itself. One duty a file; run_once is all of it, so a test turns the
-// clock and calls it.
+// Something the server does again and again by itself. One duty a file; run_once is all of it, so a test
+// turns the clock and calls it.
 #pragma once
 
 #include <string_view>

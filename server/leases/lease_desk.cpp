@@ -16,8 +16,8 @@ absl::Status server_stops() { return absl::UnavailableError("the server stops; a
 LeaseDesk::LeaseDesk(JobStore& store, Executor& executor, const Clock& clock, const AttemptPolicy& policy)
     : store_(store), executor_(executor), clock_(clock), policy_(policy) {}
 
-LeaseDesk::Ticket LeaseDesk::ask(const std::string& worker_id, const std::string& instance_id, Milliseconds wait,
-                                 Answer answer) {
+LeaseDesk::Ticket LeaseDesk::ask(const std::string& worker_id, const std::string& instance_id,
+                                 Milliseconds wait, Answer answer) {
   const Milliseconds bounded = std::clamp(wait, Milliseconds(0), policy_.longest_wait);
   const std::lock_guard lock(mutex_);
   const Ticket ticket = ++last_ticket_;
@@ -35,7 +35,8 @@ void LeaseDesk::withdraw(Ticket ticket) {
   {
     const std::lock_guard lock(mutex_);
     if (ticket == in_hand_) in_hand_ = 0;  // serve() sees it
-    const auto at = std::find_if(waiters_.begin(), waiters_.end(), [&](const Waiter& w) { return w.ticket == ticket; });
+    const auto at =
+        std::find_if(waiters_.begin(), waiters_.end(), [&](const Waiter& w) { return w.ticket == ticket; });
     if (at == waiters_.end()) return;
     gone = std::move(*at);
     waiters_.erase(at);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where workers wait for work (the long poll of WorkerService.Lease). First come, first served; a job that becomes
-// queued reaches the first waiting worker at once.
+// Where workers wait for work (the long poll of WorkerService.Lease). First come, first served; a job that
+// becomes queued reaches the first waiting worker at once.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ class LeaseDesk final : public Duty {
   // The executor is stopped before the desk goes.
   LeaseDesk(JobStore& store, Executor& executor, const Clock& clock, const AttemptPolicy& policy);
 
-  // Calls answer exactly once, on a thread of the executor or of the caller of run_once, withdraw or close; never
-  // from within ask.
+  // Calls answer exactly once, on a thread of the executor or of the caller of run_once, withdraw or close;
+  // never from within ask.
   Ticket ask(const std::string& worker_id, const std::string& instance_id, Milliseconds wait, Answer answer);
 
   // The worker hung up. When a job is just being given to it, the job's lease will expire instead.
@@ -66,7 +66,8 @@ class LeaseDesk final : public Duty {
   std::mutex mutex_;
   std::list<Waiter> waiters_;  // by arrival
   Ticket last_ticket_ = 0;
-  Ticket in_hand_ = 0;    // the waiter for whom the store is being asked; 0: none, or it was withdrawn meanwhile
+  Ticket in_hand_ =
+      0;  // the waiter for whom the store is being asked; 0: none, or it was withdrawn meanwhile
   bool serving_ = false;  // one server of the queue at a time keeps the order
   bool again_ = false;    // something was queued meanwhile
   bool closed_ = false;

@@ -8,8 +8,9 @@
 
 namespace skinframe::server {
 
-// For one lease's time after the start nothing is taken: while the server was away no heartbeat could come, and the
-// workers get the chance to send theirs. A lease stays good until it is taken, also when its time is over.
+// For one lease's time after the start nothing is taken: while the server was away no heartbeat could come,
+// and the workers get the chance to send theirs. A lease stays good until it is taken, also when its time is
+// over.
 class LeaseReaper final : public Duty {
  public:
   LeaseReaper(JobStore& store, const AttemptPolicy& policy, Time server_start);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where jobs and their events live. The store decides nothing: it runs the caller's decision inside a transaction
-// and makes record and events durable together.
+// Where jobs and their events live. The store decides nothing: it runs the caller's decision inside a
+// transaction and makes record and events durable together.
 //
 // Guarantees of every implementation, checked by one conformance suite:
 //   1. A write that returned OK is durable; one that returned an error left nothing behind.
@@ -62,13 +62,15 @@ class JobStore {
  public:
   virtual ~JobStore() = default;
 
-  // ALREADY_EXISTS: the request id is known with another digest. RESOURCE_EXHAUSTED: queue_limit jobs are queued.
+  // ALREADY_EXISTS: the request id is known with another digest. RESOURCE_EXHAUSTED: queue_limit jobs are
+  // queued.
   virtual absl::StatusOr<Created> create(const Change& job, std::int64_t queue_limit) = 0;
 
   // Runs decide on the job and makes its change durable; returns the job as it then stands. NOT_FOUND.
   virtual absl::StatusOr<JobRecord> modify(const std::string& job_id, const Decide& decide) = 0;
 
-  // Runs decide on the first queued job with not_before <= now: highest priority, then oldest. Nothing: no such job.
+  // Runs decide on the first queued job with not_before <= now: highest priority, then oldest. Nothing: no
+  // such job.
   virtual absl::StatusOr<std::optional<JobRecord>> lease_next(Time now, const DecideLease& decide) = 0;
 
   // Forgets job, labels and events when permit says OK. NOT_FOUND.
@@ -79,13 +81,14 @@ class JobStore {
   virtual absl::StatusOr<ListPage> list(const ListQuery& query) = 0;
 
   // At most limit events after a sequence number, in order. NOT_FOUND.
-  virtual absl::StatusOr<std::vector<v1::JobEvent>> events(const std::string& job_id, std::int64_t after_sequence,
-                                                           int limit) = 0;
+  virtual absl::StatusOr<std::vector<v1::JobEvent>> events(const std::string& job_id,
+                                                           std::int64_t after_sequence, int limit) = 0;
 
   // Queued jobs that stand before this queued one. NOT_FOUND.
   virtual absl::StatusOr<std::int64_t> queued_before(const std::string& job_id) = 0;
 
-  // Ids of running jobs whose lease ended at or before now; of queued jobs whose deadline passed. Oldest first.
+  // Ids of running jobs whose lease ended at or before now; of queued jobs whose deadline passed. Oldest
+  // first.
   virtual absl::StatusOr<std::vector<std::string>> expired_leases(Time now, int limit) = 0;
   virtual absl::StatusOr<std::vector<std::string>> passed_deadlines(Time now, int limit) = 0;
 };

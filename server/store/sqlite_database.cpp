@@ -37,7 +37,8 @@ SqliteStatement& SqliteStatement::bind(std::int64_t value) {
 
 SqliteStatement& SqliteStatement::bind_text(std::string_view value) {
   if (status_.ok()) {
-    take(sqlite3_bind_text64(statement_, next_parameter_++, value.data(), value.size(), SQLITE_TRANSIENT, SQLITE_UTF8));
+    take(sqlite3_bind_text64(statement_, next_parameter_++, value.data(), value.size(), SQLITE_TRANSIENT,
+                             SQLITE_UTF8));
   }
   return *this;
 }
@@ -78,12 +79,16 @@ std::string SqliteStatement::bytes(int column) const {
   return {static_cast<const char*>(data), static_cast<std::size_t>(sqlite3_column_bytes(statement_, column))};
 }
 
-bool SqliteStatement::is_null(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
+bool SqliteStatement::is_null(int column) const {
+  return sqlite3_column_type(statement_, column) == SQLITE_NULL;
+}
 
-absl::StatusOr<std::unique_ptr<SqliteDatabase>> SqliteDatabase::open(const std::filesystem::path& file, Mode mode) {
+absl::StatusOr<std::unique_ptr<SqliteDatabase>> SqliteDatabase::open(const std::filesystem::path& file,
+                                                                     Mode mode) {
   std::unique_ptr<SqliteDatabase> database(new SqliteDatabase);
-  const int flags = (mode == Mode::kReadOnly ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) |
-                    SQLITE_OPEN_NOMUTEX;
+  const int flags =
+      (mode == Mode::kReadOnly ? SQLITE_OPEN_READONLY : SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE) |
+      SQLITE_OPEN_NOMUTEX;
   const int code = sqlite3_open_v2(file.c_str(), &database->handle_, flags, nullptr);
   if (code != SQLITE_OK) return database->error(code, "cannot open " + file.string());
   sqlite3_extended_result_codes(database->handle_, 1);
@@ -110,11 +115,14 @@ absl::Status SqliteDatabase::error(int code, std::string_view what) const {
   const std::string message =
       fmt::format("store: {}: {}", handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(code), what);
   switch (code & 0xff) {
-    case SQLITE_FULL: return absl::ResourceExhaustedError("no room on the server's disk (" + message + ")");
+    case SQLITE_FULL:
+      return absl::ResourceExhaustedError("no room on the server's disk (" + message + ")");
     case SQLITE_BUSY:
     case SQLITE_LOCKED:
-    case SQLITE_IOERR: return absl::UnavailableError(message);
-    default: return absl::InternalError(message);
+    case SQLITE_IOERR:
+      return absl::UnavailableError(message);
+    default:
+      return absl::InternalError(message);
   }
 }
 

@@ -20,8 +20,8 @@ namespace skinframe::server {
 
 class SqliteDatabase;
 
-// One use of a prepared statement; its bindings and its cursor go with it. Errors are kept until status() is asked:
-// after the first one nothing further is done.
+// One use of a prepared statement; its bindings and its cursor go with it. Errors are kept until status() is
+// asked: after the first one nothing further is done.
 class SqliteStatement {
  public:
   SqliteStatement(SqliteDatabase& database, std::string_view sql);
@@ -35,8 +35,8 @@ class SqliteStatement {
   SqliteStatement& bind_blob(std::string_view value);
   SqliteStatement& bind_null();
 
-  bool step();                    // true: a row is there
-  absl::Status run();             // steps to the end
+  bool step();         // true: a row is there
+  absl::Status run();  // steps to the end
   const absl::Status& status() const { return status_; }
 
   std::int64_t integer(int column) const;

@@ -70,7 +70,8 @@ absl::Status apply(SqliteDatabase& database, const Migration& step) {
   if (!status.ok()) return status;
   status = database.execute(step.sql);
   if (status.ok()) {
-    SqliteStatement record(database, "INSERT INTO schema_version (version, name, applied_ms) VALUES (?, ?, ?)");
+    SqliteStatement record(database,
+                           "INSERT INTO schema_version (version, name, applied_ms) VALUES (?, ?, ?)");
     status = record.bind(step.version)
                  .bind_text(step.name)
                  .bind(std::chrono::duration_cast<std::chrono::milliseconds>(now).count())
@@ -79,7 +80,8 @@ absl::Status apply(SqliteDatabase& database, const Migration& step) {
   if (status.ok()) status = database.execute("COMMIT");
   if (status.ok()) return status;
   database.execute("ROLLBACK").IgnoreError();  // the first error is the one to tell
-  return absl::Status(status.code(), fmt::format("migration {} ({}): {}", step.version, step.name, std::string(status.message())));
+  return absl::Status(status.code(), fmt::format("migration {} ({}): {}", step.version, step.name,
+                                                 std::string(status.message())));
 }
 
 }  // namespace
@@ -99,8 +101,8 @@ absl::Status migrate(SqliteDatabase& database, std::span<const Migration> steps)
   }
   const std::int64_t known = steps.empty() ? 0 : steps.back().version;
   if (version > known) {
-    return absl::FailedPreconditionError(
-        fmt::format("the store has schema version {}, this server knows up to {}: use the newer server", version, known));
+    return absl::FailedPreconditionError(fmt::format(
+        "the store has schema version {}, this server knows up to {}: use the newer server", version, known));
   }
   for (const Migration& step : steps) {
     if (step.version <= version) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shape of the SQLite store, as a numbered list of steps. A step that has been released is never edited: what
-// changes later is a further step.
+// The shape of the SQLite store, as a numbered list of steps. A step that has been released is never edited:
+// what changes later is a further step.
 #pragma once
 
 #include <span>
@@ -18,8 +18,8 @@ struct Migration {
 
 std::span<const Migration> sqlite_migrations();
 
-// Brings the database to the newest version, each step in a transaction of its own. FAILED_PRECONDITION: it was
-// written by a newer server.
+// Brings the database to the newest version, each step in a transaction of its own. FAILED_PRECONDITION: it
+// was written by a newer server.
 absl::Status migrate(SqliteDatabase& database, std::span<const Migration> steps);
 
 }  // namespace skinframe::server

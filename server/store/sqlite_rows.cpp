@@ -27,10 +27,12 @@ std::string results_blob(const JobRecord& record) {
 
 // The columns that change after submission, in the order in which both INSERT and UPDATE name them.
 constexpr char kMutableInsert[] =
-    "state, reason, detail, results, start_ms, end_ms, attempt, lost_attempts, not_before_ms, cancel_requested, "
+    "state, reason, detail, results, start_ms, end_ms, attempt, lost_attempts, not_before_ms, "
+    "cancel_requested, "
     "last_sequence, fencing_token, worker_id, instance_id, lease_expires_ms, completion_digest";
 constexpr char kMutableUpdate[] =
-    "state = ?, reason = ?, detail = ?, results = ?, start_ms = ?, end_ms = ?, attempt = ?, lost_attempts = ?, "
+    "state = ?, reason = ?, detail = ?, results = ?, start_ms = ?, end_ms = ?, attempt = ?, lost_attempts = "
+    "?, "
     "not_before_ms = ?, cancel_requested = ?, last_sequence = ?, fencing_token = ?, worker_id = ?, "
     "instance_id = ?, lease_expires_ms = ?, completion_digest = ?";
 
@@ -56,7 +58,8 @@ void bind_mutable(SqliteStatement& statement, const JobRecord& record) {
 absl::Status insert_labels(SqliteDatabase& database, std::int64_t ordinal, const v1::JobSpec& spec) {
   for (const auto& [key, value] : spec.labels()) {
     SqliteStatement insert(database, "INSERT INTO labels (ordinal, key, value) VALUES (?, ?, ?)");
-    if (absl::Status status = insert.bind(ordinal).bind_text(key).bind_text(value).run(); !status.ok()) return status;
+    if (absl::Status status = insert.bind(ordinal).bind_text(key).bind_text(value).run(); !status.ok())
+      return status;
   }
   return absl::OkStatus();
 }
@@ -64,7 +67,8 @@ absl::Status insert_labels(SqliteDatabase& database, std::int64_t ordinal, const
 }  // namespace
 
 const char* const kJobColumns =
-    "ordinal, job_id, request_id, spec_digest, spec, profiles, create_ms, deadline_ms, state, reason, detail, "
+    "ordinal, job_id, request_id, spec_digest, spec, profiles, create_ms, deadline_ms, state, reason, "
+    "detail, "
     "results, start_ms, end_ms, attempt, lost_attempts, not_before_ms, cancel_requested, last_sequence, "
     "fencing_token, worker_id, instance_id, lease_expires_ms, completion_digest";
 
@@ -119,7 +123,8 @@ absl::StatusOr<JobRow> find_job(SqliteDatabase& database, const std::string& job
 
 absl::StatusOr<std::int64_t> insert_job(SqliteDatabase& database, const JobRecord& record) {
   static const std::string kSql = fmt::format(
-      "INSERT INTO jobs (job_id, request_id, spec_digest, spec, profiles, priority, create_ms, deadline_ms, {}) "
+      "INSERT INTO jobs (job_id, request_id, spec_digest, spec, profiles, priority, create_ms, deadline_ms, "
+      "{}) "
       "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
       kMutableInsert);
   const v1::Job& job = record.job;
@@ -130,7 +135,9 @@ absl::StatusOr<std::int64_t> insert_job(SqliteDatabase& database, const JobRecor
   } else {
     insert.bind_text(record.request_id);
   }
-  insert.bind_text(record.spec_digest).bind_blob(job.spec().SerializeAsString()).bind_blob(profiles_blob(record));
+  insert.bind_text(record.spec_digest)
+      .bind_blob(job.spec().SerializeAsString())
+      .bind_blob(profiles_blob(record));
   insert.bind(job.spec().priority());
   bind_time(insert, true, job.create_time());
   if (record.deadline) {

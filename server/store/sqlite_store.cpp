@@ -17,7 +17,8 @@ constexpr std::size_t kLargestGroup = 256;
 
 class SqliteStore final : public JobStore {
  public:
-  SqliteStore(std::unique_ptr<SqliteDatabase> database, const std::filesystem::path& file, CommitListener* listener)
+  SqliteStore(std::unique_ptr<SqliteDatabase> database, const std::filesystem::path& file,
+              CommitListener* listener)
       : writer_(std::move(database), kLargestGroup), readers_(file), listener_(listener) {}
 
   absl::StatusOr<Created> create(const Change& job, std::int64_t queue_limit) override {
@@ -107,27 +108,30 @@ class SqliteStore final : public JobStore {
 
   absl::StatusOr<std::vector<v1::JobEvent>> events(const std::string& job_id, std::int64_t after_sequence,
                                                    int limit) override {
-    return readers_.with([&](SqliteDatabase& database) { return events_in(database, job_id, after_sequence, limit); });
+    return readers_.with(
+        [&](SqliteDatabase& database) { return events_in(database, job_id, after_sequence, limit); });
   }
 
   absl::StatusOr<std::int64_t> queued_before(const std::string& job_id) override {
     return readers_.with([&](SqliteDatabase& database) -> absl::StatusOr<std::int64_t> {
-      SqliteStatement count(database,
-                            "SELECT (SELECT count(*) FROM jobs WHERE state = 1 AND (priority > own.priority OR "
-                            "(priority = own.priority AND ordinal < own.ordinal))) FROM jobs own WHERE job_id = ?");
+      SqliteStatement count(
+          database,
+          "SELECT (SELECT count(*) FROM jobs WHERE state = 1 AND (priority > own.priority OR "
+          "(priority = own.priority AND ordinal < own.ordinal))) FROM jobs own WHERE job_id = ?");
       if (count.bind_text(job_id).step()) return count.integer(0);
       return count.status().ok() ? job_not_found(job_id) : count.status();
     });
   }
 
   absl::StatusOr<std::vector<std::string>> expired_leases(Time now, int limit) override {
-    return ids("SELECT job_id FROM jobs WHERE state = 2 AND lease_expires_ms <= ? ORDER BY lease_expires_ms LIMIT ?",
-               now, limit);
+    return ids(
+        "SELECT job_id FROM jobs WHERE state = 2 AND lease_expires_ms <= ? ORDER BY lease_expires_ms LIMIT ?",
+        now, limit);
   }
 
   absl::StatusOr<std::vector<std::string>> passed_deadlines(Time now, int limit) override {
-    return ids("SELECT job_id FROM jobs WHERE state = 1 AND deadline_ms <= ? ORDER BY deadline_ms LIMIT ?", now,
-               limit);
+    return ids("SELECT job_id FROM jobs WHERE state = 1 AND deadline_ms <= ? ORDER BY deadline_ms LIMIT ?",
+               now, limit);
   }
 
  private:
@@ -136,7 +140,8 @@ class SqliteStore final : public JobStore {
   }
 
   static absl::Status no_token(const absl::Status& status) {
-    return status.ok() ? absl::InternalError("store: the fencing counter is gone: the file is damaged") : status;
+    return status.ok() ? absl::InternalError("store: the fencing counter is gone: the file is damaged")
+                       : status;
   }
 
   // Events first: they raise last_sequence, which the row then holds.
@@ -156,8 +161,9 @@ class SqliteStore final : public JobStore {
         auto row = read_row(same);
         if (!row.ok()) return row.status();
         if (row->record.spec_digest != job.record.spec_digest) {
-          return absl::AlreadyExistsError(fmt::format("request_id \"{}\" was used with another spec, for job {}",
-                                                      request_id, row->record.job.job_id()));
+          return absl::AlreadyExistsError(
+              fmt::format("request_id \"{}\" was used with another spec, for job {}", request_id,
+                          row->record.job.job_id()));
         }
         created = {std::move(row->record), true};
         return absl::OkStatus();
@@ -195,7 +201,8 @@ class SqliteStore final : public JobStore {
     for (std::size_t i = 0; i < query.states.size(); ++i) sql += i == 0 ? " AND state IN (?" : ", ?";
     if (!query.states.empty()) sql += ")";
     for (std::size_t i = 0; i < query.labels.size(); ++i) {
-      sql += " AND EXISTS (SELECT 1 FROM labels WHERE labels.ordinal = jobs.ordinal AND key = ? AND value = ?)";
+      sql +=
+          " AND EXISTS (SELECT 1 FROM labels WHERE labels.ordinal = jobs.ordinal AND key = ? AND value = ?)";
     }
     sql += " ORDER BY ordinal DESC LIMIT ?";
 
@@ -218,12 +225,15 @@ class SqliteStore final : public JobStore {
     return page;
   }
 
-  static absl::StatusOr<std::vector<v1::JobEvent>> events_in(SqliteDatabase& database, const std::string& job_id,
+  static absl::StatusOr<std::vector<v1::JobEvent>> events_in(SqliteDatabase& database,
+                                                             const std::string& job_id,
                                                              std::int64_t after_sequence, int limit) {
-    // The job itself comes along as a row without a body, so that an unknown job is told from one without news.
-    SqliteStatement select(database,
-                           "SELECT body FROM jobs LEFT JOIN events ON events.ordinal = jobs.ordinal AND sequence > ? "
-                           "WHERE job_id = ? ORDER BY sequence LIMIT ?");
+    // The job itself comes along as a row without a body, so that an unknown job is told from one without
+    // news.
+    SqliteStatement select(
+        database,
+        "SELECT body FROM jobs LEFT JOIN events ON events.ordinal = jobs.ordinal AND sequence > ? "
+        "WHERE job_id = ? ORDER BY sequence LIMIT ?");
     select.bind(after_sequence).bind_text(job_id).bind(limit);
     std::vector<v1::JobEvent> events;
     bool job_there = false;

@@ -10,8 +10,8 @@
 
 namespace skinframe::server {
 
-// Opens or makes the file, and migrates it. listener may be null; else it outlives the store. Only one process at a
-// time may have the file open: the caller holds a lock on its folder.
+// Opens or makes the file, and migrates it. listener may be null; else it outlives the store. Only one
+// process at a time may have the file open: the caller holds a lock on its folder.
 absl::StatusOr<std::unique_ptr<JobStore>> open_sqlite_store(const std::filesystem::path& file,
                                                             CommitListener* listener);
 

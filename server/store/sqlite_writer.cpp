@@ -39,7 +39,8 @@ void SqliteWriter::run() {
   for (;;) {
     work_there_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
     if (waiting_.empty()) return;
-    const auto end = waiting_.begin() + static_cast<std::ptrdiff_t>(std::min(waiting_.size(), largest_group_));
+    const auto end =
+        waiting_.begin() + static_cast<std::ptrdiff_t>(std::min(waiting_.size(), largest_group_));
     std::vector<Part*> group(waiting_.begin(), end);
     waiting_.erase(waiting_.begin(), end);
     lock.unlock();

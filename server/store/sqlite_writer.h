@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one thread that writes. What waits when it becomes free goes into one transaction (group commit), each part
-// behind a savepoint of its own, so that one part's failure does not touch the others; all callers wait for the
-// commit. So the disk is waited for once a group, and never before a caller is told that its write is durable.
+// The one thread that writes. What waits when it becomes free goes into one transaction (group commit), each
+// part behind a savepoint of its own, so that one part's failure does not touch the others; all callers wait
+// for the commit. So the disk is waited for once a group, and never before a caller is told that its write is
+// durable.
 #pragma once
 
 #include <condition_variable>
@@ -28,8 +29,8 @@ class SqliteWriter {
   SqliteWriter(const SqliteWriter&) = delete;
   SqliteWriter& operator=(const SqliteWriter&) = delete;
 
-  // Blocks until the work is durable, or failed. committed runs on the writing thread after the commit, in the
-  // order of the commits, and before this returns.
+  // Blocks until the work is durable, or failed. committed runs on the writing thread after the commit, in
+  // the order of the commits, and before this returns.
   absl::Status write(const Work& work, const Committed& committed);
 
   std::int64_t groups() const;  // transactions so far

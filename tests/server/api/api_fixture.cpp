@@ -35,7 +35,8 @@ v1::UploadArtifactRequest::Header ApiTest::header(const std::string& content, st
   return header;
 }
 
-grpc::Status ApiTest::upload(const v1::UploadArtifactRequest::Header& header, const std::vector<std::string>& chunks) {
+grpc::Status ApiTest::upload(const v1::UploadArtifactRequest::Header& header,
+                             const std::vector<std::string>& chunks) {
   grpc::ClientContext context;
   set_deadline(context);
   v1::UploadArtifactResponse response;
@@ -128,7 +129,8 @@ grpc::Status ApiTest::beat(const v1::Assignment& assignment, v1::HeartbeatRespon
   return workers_->Heartbeat(&context, request, response != nullptr ? response : &ignored);
 }
 
-v1::CompleteRequest ApiTest::outcome(const v1::Assignment& assignment, v1::JobState state, v1::Reason reason) {
+v1::CompleteRequest ApiTest::outcome(const v1::Assignment& assignment, v1::JobState state,
+                                     v1::Reason reason) {
   v1::CompleteRequest request;
   request.set_job_id(assignment.job_id());
   request.set_fencing_token(assignment.fencing_token());
@@ -144,7 +146,8 @@ grpc::Status ApiTest::complete(const v1::CompleteRequest& request) {
   return workers_->Complete(&context, request, &response);
 }
 
-grpc::Status ApiTest::watch(const std::string& job_id, std::int64_t after, std::vector<v1::JobEvent>* events) {
+grpc::Status ApiTest::watch(const std::string& job_id, std::int64_t after,
+                            std::vector<v1::JobEvent>* events) {
   grpc::ClientContext context;
   set_deadline(context);
   v1::WatchJobRequest request;

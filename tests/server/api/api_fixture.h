@@ -28,7 +28,8 @@ class ApiTest : public testing::Test {
 
   // Uploads the content in one chunk; returns its name.
   std::string put(const std::string& content);
-  grpc::Status upload(const v1::UploadArtifactRequest::Header& header, const std::vector<std::string>& chunks);
+  grpc::Status upload(const v1::UploadArtifactRequest::Header& header,
+                      const std::vector<std::string>& chunks);
   v1::UploadArtifactRequest::Header header(const std::string& content, std::int64_t offset = 0);
 
   v1::JobSpec spec();  // valid, its mesh uploaded
@@ -38,7 +39,8 @@ class ApiTest : public testing::Test {
   grpc::Status cancel(const std::string& job_id);
 
   v1::Assignment lease();  // the next job; fails the test when there is none
-  grpc::Status beat(const v1::Assignment& assignment, v1::HeartbeatResponse* response = nullptr, int progress = 0);
+  grpc::Status beat(const v1::Assignment& assignment, v1::HeartbeatResponse* response = nullptr,
+                    int progress = 0);
   v1::CompleteRequest outcome(const v1::Assignment& assignment, v1::JobState state,
                               v1::Reason reason = v1::REASON_UNSPECIFIED);
   grpc::Status complete(const v1::CompleteRequest& request);

@@ -16,7 +16,8 @@ class ArtifactServiceTest : public ApiTest {
     EXPECT_EQ(artifacts_->Stat(&context, request, &response).error_code(), expected);
     return response;
   }
-  grpc::StatusCode download(const std::string& sha256, std::int64_t offset, std::int64_t length, std::string* content) {
+  grpc::StatusCode download(const std::string& sha256, std::int64_t offset, std::int64_t length,
+                            std::string* content) {
     grpc::ClientContext context;
     set_deadline(context);
     v1::DownloadArtifactRequest request;

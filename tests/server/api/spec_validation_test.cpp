@@ -53,7 +53,8 @@ TEST(SpecValidation, TheSimplestSpecIsGood) {
 TEST(SpecValidation, AnUnknownPrinterIsAnsweredWithTheKnownOnes) {
   expect_refused([](auto& s) { s.mutable_printers(0)->set_printer_id("x"); },
                  "unknown printer \"x\"; known: makerbot-replicator-2, sinterstation-hiq");
-  expect_refused([](auto& s) { s.mutable_printers(0)->set_material_id("x"); }, "unknown material \"x\"; known: pa, pla");
+  expect_refused([](auto& s) { s.mutable_printers(0)->set_material_id("x"); },
+                 "unknown material \"x\"; known: pa, pla");
 }
 
 TEST(SpecValidation, PrintersAreOneOrMoreAndNoneTwice) {
@@ -86,8 +87,10 @@ TEST(SpecValidation, NumericOptionsHaveTheirDocumentedRanges) {
   };
   const Range ranges[] = {
       {"size_mm", 1, 2000, [](auto& o, double v) { o.set_size_mm(v); }},
-      {"skin_nodes", 12, 20000, [](auto& o, double v) { o.set_skin_nodes(static_cast<int>(std::lround(v))); }},
-      {"internal_nodes", 0, 20000, [](auto& o, double v) { o.set_internal_nodes(static_cast<int>(std::lround(v))); }},
+      {"skin_nodes", 12, 20000,
+       [](auto& o, double v) { o.set_skin_nodes(static_cast<int>(std::lround(v))); }},
+      {"internal_nodes", 0, 20000,
+       [](auto& o, double v) { o.set_internal_nodes(static_cast<int>(std::lround(v))); }},
       {"voxel_mm", 0.02, 5, [](auto& o, double v) { o.set_voxel_mm(v); }},
       {"displacement_limit_mm", 0.001, 100, [](auto& o, double v) { o.set_displacement_limit_mm(v); }},
   };
@@ -106,8 +109,10 @@ TEST(SpecValidation, NumericOptionsHaveTheirDocumentedRanges) {
 
 TEST(SpecValidation, EnumNumbersOutsideTheApiAreRefused) {
   expect_refused([](auto& s) { s.mutable_options()->set_up(static_cast<v1::Axis>(57)); }, "options.up");
-  expect_refused([](auto& s) { s.mutable_options()->set_balance(static_cast<v1::Balance>(57)); }, "options.balance");
-  expect_refused([](auto& s) { s.mutable_options()->set_order(static_cast<v1::StageOrder>(57)); }, "options.order");
+  expect_refused([](auto& s) { s.mutable_options()->set_balance(static_cast<v1::Balance>(57)); },
+                 "options.balance");
+  expect_refused([](auto& s) { s.mutable_options()->set_order(static_cast<v1::StageOrder>(57)); },
+                 "options.order");
 }
 
 TEST(SpecValidation, LoadsAreNamedPlacedAndBounded) {
@@ -129,21 +134,29 @@ TEST(SpecValidation, LoadsAreNamedPlacedAndBounded) {
   expect_good(with_load([](auto& l) { l.set_radius_mm(1000); }));
   expect_refused(with_load([](auto& l) { l.set_radius_mm(1000.1); }), "loads[0].radius_mm");
   expect_refused(with_load([](auto& l) { l.set_radius_mm(-1); }), "loads[0].radius_mm");
-  expect_refused([](auto& s) { for (int i = 0; i < 65; ++i) *s.add_loads() = good_load(); }, "spec.loads");
+  expect_refused(
+      [](auto& s) {
+        for (int i = 0; i < 65; ++i) *s.add_loads() = good_load();
+      },
+      "spec.loads");
 }
 
 TEST(SpecValidation, LabelsPriorityAndDeadlineAreBounded) {
   expect_good([](auto& s) { (*s.mutable_labels())["farm.hall-3_b"] = "north"; });
   expect_refused([](auto& s) { (*s.mutable_labels())["Farm"] = "x"; }, "Farm");
   expect_refused([](auto& s) { (*s.mutable_labels())["farm"] = std::string(256, 'x'); }, "farm");
-  expect_refused([](auto& s) { for (int i = 0; i < 17; ++i) (*s.mutable_labels())[numbered_label(i)] = ""; },
-                 "spec.labels");
+  expect_refused(
+      [](auto& s) {
+        for (int i = 0; i < 17; ++i) (*s.mutable_labels())[numbered_label(i)] = "";
+      },
+      "spec.labels");
   expect_good([](auto& s) { s.set_priority(100); });
   expect_refused([](auto& s) { s.set_priority(101); }, "priority");
   expect_refused([](auto& s) { s.set_priority(-101); }, "priority");
   expect_refused([](auto& s) { s.mutable_deadline(); }, "deadline");
   expect_refused([](auto& s) { s.mutable_deadline()->set_seconds(-5); }, "deadline");
-  expect_refused([](auto& s) { s.mutable_deadline()->set_seconds(std::numeric_limits<std::int64_t>::max()); }, "deadline");
+  expect_refused([](auto& s) { s.mutable_deadline()->set_seconds(std::numeric_limits<std::int64_t>::max()); },
+                 "deadline");
   expect_good([](auto& s) { s.mutable_deadline()->set_seconds(60); });
 }
 

@@ -159,7 +159,8 @@ TEST_F(WorkerServiceTest, MalformedCompletionsAreInvalidArguments) {
   const auto code = [&](const v1::CompleteRequest& request) { return complete(request).error_code(); };
   EXPECT_EQ(code(outcome(assignment, v1::JOB_STATE_RUNNING)), grpc::StatusCode::INVALID_ARGUMENT);
   EXPECT_EQ(code(outcome(assignment, v1::JOB_STATE_FAILED)), grpc::StatusCode::INVALID_ARGUMENT);
-  EXPECT_EQ(code(outcome(assignment, v1::JOB_STATE_SUCCEEDED, v1::REASON_CRASHED)), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(code(outcome(assignment, v1::JOB_STATE_SUCCEEDED, v1::REASON_CRASHED)),
+            grpc::StatusCode::INVALID_ARGUMENT);
   auto retry = outcome(assignment, v1::JOB_STATE_FAILED, v1::REASON_INFEASIBLE);
   retry.set_retryable(true);
   EXPECT_EQ(code(retry), grpc::StatusCode::INVALID_ARGUMENT);

@@ -46,7 +46,8 @@ TEST(Options, TheNetworkNeedsTlsOrAnExplicitFlag) {
   expect_refused({"--data", "d", "--listen", "[::]:7350"}, "--allow-plaintext");
   expect_refused({"--data", "d", "--listen", "farm.example:7350"}, "--allow-plaintext");
   EXPECT_TRUE(validate({"--data", "d", "--listen", "0.0.0.0:7350", "--allow-plaintext"}).ok());
-  EXPECT_TRUE(validate({"--data", "d", "--listen", "0.0.0.0:7350", "--tls-cert", "c", "--tls-key", "k"}).ok());
+  EXPECT_TRUE(
+      validate({"--data", "d", "--listen", "0.0.0.0:7350", "--tls-cert", "c", "--tls-key", "k"}).ok());
 }
 
 TEST(Options, WhatIsWrongIsNamed) {
@@ -72,7 +73,8 @@ TEST(Options, HelpAndVersionEndWithZeroUnknownFlagsWithTwo) {
 }
 
 TEST(ListenAddress, LoopbackIsRecognisedInAllItsForms) {
-  for (const char* address : {"127.0.0.1:1", "127.9.9.9:1", "localhost:1", "[::1]:1"}) EXPECT_TRUE(is_loopback(address));
+  for (const char* address : {"127.0.0.1:1", "127.9.9.9:1", "localhost:1", "[::1]:1"})
+    EXPECT_TRUE(is_loopback(address));
   for (const char* address : {"128.0.0.1:1", "0.0.0.0:1", "[::]:1", "127.0.0.1.example:1", "local:1"}) {
     EXPECT_FALSE(is_loopback(address)) << address;
   }

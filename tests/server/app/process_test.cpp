@@ -203,8 +203,8 @@ TEST_F(ServerProcessTest, ASecondServerOverTheSameDataIsRefusedInOneSentence) {
 TEST_F(ServerProcessTest, ATakenPortIsRefusedInOneSentence) {
   const std::string address = process_.start();
   ASSERT_FALSE(address.empty());
-  const auto [code, text] =
-      ServerProcess::run({"--listen", address, "--data", (folder_.path() / "other").string()}, folder_.path());
+  const auto [code, text] = ServerProcess::run(
+      {"--listen", address, "--data", (folder_.path() / "other").string()}, folder_.path());
   EXPECT_EQ(code, 1);
   EXPECT_NE(text.find("cannot listen on " + address), std::string::npos) << text;
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;

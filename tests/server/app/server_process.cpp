@@ -53,7 +53,7 @@ ServerProcess::~ServerProcess() {
 std::string ServerProcess::start(const std::vector<std::string>& extra_arguments) {
   const auto port_file = folder_ / "port";
   std::filesystem::remove(port_file);
-  std::vector<std::string> arguments = {"--data",        (folder_ / "data").string(), "--listen", "127.0.0.1:0",
+  std::vector<std::string> arguments = {"--data",      (folder_ / "data").string(), "--listen", "127.0.0.1:0",
                                         "--port-file", port_file.string()};
   arguments.insert(arguments.end(), extra_arguments.begin(), extra_arguments.end());
   pid_ = spawn(arguments, folder_ / "log");

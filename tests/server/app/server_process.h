@@ -22,7 +22,8 @@ class ServerProcess {
   int stop(int signal);  // sends the signal and waits: the exit code, or minus the signal that ended it
 
   // Runs it to its end, which must come by itself: the exit code and what it wrote to stderr.
-  static std::pair<int, std::string> run(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+  static std::pair<int, std::string> run(const std::vector<std::string>& arguments,
+                                         const std::filesystem::path& folder);
 
  private:
   std::filesystem::path folder_;

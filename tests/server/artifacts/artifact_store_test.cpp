@@ -18,7 +18,9 @@ namespace {
 class Artifacts : public testing::Test {
  protected:
   void SetUp() override { reopen(); }
-  void reopen() { store_ = *ArtifactStore::open(folder_.path(), {.largest_bytes = 1000, .largest_chunk_bytes = 100}); }
+  void reopen() {
+    store_ = *ArtifactStore::open(folder_.path(), {.largest_bytes = 1000, .largest_chunk_bytes = 100});
+  }
 
   absl::Status put(const std::string& content) {
     auto upload = store_->upload(sha256_hex(content), static_cast<std::int64_t>(content.size()), 0);
@@ -54,8 +56,9 @@ TEST_F(Artifacts, AnUnknownOneIsNotCompleteAndResumesAtZero) {
 }
 
 TEST_F(Artifacts, NamesThatAreNoSha256NeverReachTheDisk) {
-  for (const char* name : {"", "abc", "../../../../../../../../../../../../../../../../../../../../etc/passwd",
-                           "ABCDEF0000000000000000000000000000000000000000000000000000000000"}) {
+  for (const char* name :
+       {"", "abc", "../../../../../../../../../../../../../../../../../../../../etc/passwd",
+        "ABCDEF0000000000000000000000000000000000000000000000000000000000"}) {
     EXPECT_TRUE(absl::IsInvalidArgument(store_->stat(name).status())) << name;
     EXPECT_TRUE(absl::IsInvalidArgument(store_->upload(name, 1, 0).status())) << name;
     EXPECT_TRUE(absl::IsNotFound(store_->read(name).status())) << name;

@@ -127,13 +127,15 @@ TEST(Complete, RetryableTwiceLosesOneAttempt) {
 
 TEST(Complete, FinishedWorkIsKeptThoughCancellationWasAsked) {
   const JobRecord asked = after(decide_cancel(running(), kNoon));
-  const JobRecord done = after(decide_complete(asked, completion("job", 7, v1::JOB_STATE_SUCCEEDED), kNoon, kPolicy));
+  const JobRecord done =
+      after(decide_complete(asked, completion("job", 7, v1::JOB_STATE_SUCCEEDED), kNoon, kPolicy));
   EXPECT_EQ(done.job.state(), v1::JOB_STATE_SUCCEEDED);
 }
 
 TEST(Complete, CancelledEndsAJobThatWasAskedTo) {
   const JobRecord asked = after(decide_cancel(running(), kNoon));
-  const JobRecord done = after(decide_complete(asked, completion("job", 7, v1::JOB_STATE_CANCELLED), kNoon, kPolicy));
+  const JobRecord done =
+      after(decide_complete(asked, completion("job", 7, v1::JOB_STATE_CANCELLED), kNoon, kPolicy));
   EXPECT_EQ(done.job.state(), v1::JOB_STATE_CANCELLED);
 }
 
@@ -168,12 +170,14 @@ TEST(LostAttempt, ThirdOneFailsTheJobWithItsLastReason) {
 }
 
 TEST(LeaseExpiry, DoesNothingToALeaseThatWasProlonged) {
-  EXPECT_FALSE(decide_lease_expired(running(), kNoon + kPolicy.lease - Milliseconds(1), kPolicy)->has_value());
+  EXPECT_FALSE(
+      decide_lease_expired(running(), kNoon + kPolicy.lease - Milliseconds(1), kPolicy)->has_value());
 }
 
 TEST(LeaseExpiry, OfAJobAskedToStopCancelsIt) {
   const JobRecord asked = after(decide_cancel(running(), kNoon));
-  EXPECT_EQ(after(decide_lease_expired(asked, kNoon + kPolicy.lease, kPolicy)).job.state(), v1::JOB_STATE_CANCELLED);
+  EXPECT_EQ(after(decide_lease_expired(asked, kNoon + kPolicy.lease, kPolicy)).job.state(),
+            v1::JOB_STATE_CANCELLED);
 }
 
 TEST(Deadline, EndsAQueuedJobAndStopsARunningOne) {

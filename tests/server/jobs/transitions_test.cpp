@@ -42,12 +42,14 @@ TEST(Transitions, EveryStateAndTriggerGoesWhereThePictureSays) {
 
 TEST(Transitions, NoArrowIsThereTwice) {
   std::set<std::pair<v1::JobState, Trigger>> arrows;
-  for (const Transition& arrow : all_transitions()) EXPECT_TRUE(arrows.insert({arrow.from, arrow.trigger}).second);
+  for (const Transition& arrow : all_transitions())
+    EXPECT_TRUE(arrows.insert({arrow.from, arrow.trigger}).second);
   EXPECT_EQ(arrows.size(), kPicture.size());
 }
 
 TEST(Transitions, NoArrowLeavesAFinalState) {
-  for (const Transition& arrow : all_transitions()) EXPECT_FALSE(is_final(arrow.from)) << state_name(arrow.from);
+  for (const Transition& arrow : all_transitions())
+    EXPECT_FALSE(is_final(arrow.from)) << state_name(arrow.from);
 }
 
 TEST(Transitions, EveryStateCanBeReachedFromQueued) {

@@ -31,15 +31,18 @@ class LeaseDeskTest : public testing::Test, public CommitListener {
   }
   void removed(const std::string&) override {}
 
-  void submit(const std::string& id) { ASSERT_TRUE(store_->create(example_job(id, 0, clock_.now()), 100).ok()); }
+  void submit(const std::string& id) {
+    ASSERT_TRUE(store_->create(example_job(id, 0, clock_.now()), 100).ok());
+  }
   Answered ask(const std::string& worker, Milliseconds wait, LeaseDesk::Ticket* ticket = nullptr) {
     auto promise = std::make_shared<std::promise<absl::StatusOr<std::optional<JobRecord>>>>();
-    const auto number = desk_->ask(worker, "instance", wait, [promise](auto leased) { promise->set_value(leased); });
+    const auto number =
+        desk_->ask(worker, "instance", wait, [promise](auto leased) { promise->set_value(leased); });
     if (ticket != nullptr) *ticket = number;
     return promise->get_future();
   }
-  // Waits until the desk has looked for everyone who asked so far: an answer to a further wait of zero proves it,
-  // because those before it are asked for first.
+  // Waits until the desk has looked for everyone who asked so far: an answer to a further wait of zero proves
+  // it, because those before it are asked for first.
   void settle() { EXPECT_FALSE(ask("nobody", Milliseconds(0)).get()->has_value()); }
 
   TemporaryFolder folder_;
@@ -114,9 +117,12 @@ TEST_F(LeaseDeskTest, AJobWhoseBackoffPassedIsFoundByTheDuty) {
   ASSERT_TRUE(first.ok() && first->has_value());
   auto crash = completion("a", (*first)->lease.fencing_token, v1::JOB_STATE_FAILED, v1::REASON_CRASHED);
   crash.set_retryable(true);
-  ASSERT_TRUE(store_->modify("a", [&](const JobRecord& r) {
-    return decide_complete(r, crash, clock_.now(), AttemptPolicy{});
-  }).ok());
+  ASSERT_TRUE(store_
+                  ->modify("a",
+                           [&](const JobRecord& r) {
+                             return decide_complete(r, crash, clock_.now(), AttemptPolicy{});
+                           })
+                  .ok());
   auto waiting = ask("w", seconds(30));
   settle();
   clock_.advance(AttemptPolicy{}.first_backoff);

@@ -19,7 +19,9 @@ class Leases : public testing::Test {
     store_ = *open_sqlite_store(folder_.path() / "jobs.sqlite", nullptr);
     reaper_.emplace(*store_, policy_, clock_.now() - policy_.lease);  // a server that has been up for a while
   }
-  void submit(JobRecord record) { ASSERT_TRUE(store_->create(decide_submit(record, clock_.now()), 100).ok()); }
+  void submit(JobRecord record) {
+    ASSERT_TRUE(store_->create(decide_submit(record, clock_.now()), 100).ok());
+  }
   std::int64_t lease() {
     const auto job = store_->lease_next(clock_.now(), [&](const JobRecord& record, std::int64_t token) {
       return leased(record, token, clock_.now(), policy_);
@@ -29,13 +31,18 @@ class Leases : public testing::Test {
   }
   absl::Status beat(std::int64_t token) {
     return store_
-        ->modify("job", [&](const JobRecord& r) { return decide_heartbeat(r, heartbeat("job", token), clock_.now(), policy_); })
+        ->modify("job",
+                 [&](const JobRecord& r) {
+                   return decide_heartbeat(r, heartbeat("job", token), clock_.now(), policy_);
+                 })
         .status();
   }
   absl::Status complete(std::int64_t token, v1::JobState state, const std::string& detail = "") {
     auto request = completion("job", token, state);
     request.set_detail(detail);
-    return store_->modify("job", [&](const JobRecord& r) { return decide_complete(r, request, clock_.now(), policy_); })
+    return store_
+        ->modify("job",
+                 [&](const JobRecord& r) { return decide_complete(r, request, clock_.now(), policy_); })
         .status();
   }
   void reap() { ASSERT_TRUE(reaper_->run_once(clock_.now()).ok()); }

@@ -38,7 +38,8 @@ class JobStoreConformance : public testing::TestWithParam<StoreKind> {
   absl::StatusOr<JobRecord> beat(const std::string& job_id, std::int64_t token, int progress) {
     auto request = heartbeat(job_id, token);
     for (int i = 0; i < progress; ++i) request.add_progress()->set_iteration(i);
-    return store_->modify(job_id, [&](const JobRecord& job) { return decide_heartbeat(job, request, kNoon, kPolicy); });
+    return store_->modify(
+        job_id, [&](const JobRecord& job) { return decide_heartbeat(job, request, kNoon, kPolicy); });
   }
   absl::Status cancel(const std::string& job_id) {
     return store_->modify(job_id, [](const JobRecord& job) { return decide_cancel(job, kNoon); }).status();
@@ -145,7 +146,9 @@ TEST_P(JobStoreConformance, AJobInBackoffIsPassedOverUntilItsTime) {
   const auto first = lease();
   ASSERT_TRUE(first);
   const Time expiry = kNoon + kPolicy.lease;
-  ASSERT_TRUE(store_->modify("a", [&](const JobRecord& job) { return decide_lease_expired(job, expiry, kPolicy); }).ok());
+  ASSERT_TRUE(
+      store_->modify("a", [&](const JobRecord& job) { return decide_lease_expired(job, expiry, kPolicy); })
+          .ok());
   const Time not_before = store_->get("a")->not_before;
   EXPECT_FALSE(lease(not_before - Milliseconds(1)));
   EXPECT_TRUE(lease(not_before));
@@ -155,9 +158,14 @@ TEST_P(JobStoreConformance, FencingTokensRiseOverDeletionAndReopening) {
   create("a");
   const auto first = lease();
   ASSERT_TRUE(first);
-  ASSERT_TRUE(store_->modify("a", [&](const JobRecord& job) {
-    return decide_complete(job, completion("a", first->lease.fencing_token, v1::JOB_STATE_SUCCEEDED), kNoon, kPolicy);
-  }).ok());
+  ASSERT_TRUE(store_
+                  ->modify("a",
+                           [&](const JobRecord& job) {
+                             return decide_complete(
+                                 job, completion("a", first->lease.fencing_token, v1::JOB_STATE_SUCCEEDED),
+                                 kNoon, kPolicy);
+                           })
+                  .ok());
   ASSERT_TRUE(store_->remove("a", permit_delete).ok());
   reopen();
   create("a");
@@ -261,8 +269,9 @@ TEST_P(JobStoreConformance, ListFiltersByStateAndByAllLabels) {
   EXPECT_EQ(listed({.labels = {{"farm", "north"}}}), (std::vector<std::string>{"b", "a"}));
   EXPECT_EQ(listed({.labels = {{"farm", "north"}, {"user", "eva"}}}), (std::vector<std::string>{"a"}));
   EXPECT_EQ(listed({.states = {v1::JOB_STATE_QUEUED}}), (std::vector<std::string>{"c", "a"}));
-  EXPECT_EQ(listed({.states = {v1::JOB_STATE_QUEUED, v1::JOB_STATE_CANCELLED}, .labels = {{"farm", "north"}}}),
-            (std::vector<std::string>{"b", "a"}));
+  EXPECT_EQ(
+      listed({.states = {v1::JOB_STATE_QUEUED, v1::JOB_STATE_CANCELLED}, .labels = {{"farm", "north"}}}),
+      (std::vector<std::string>{"b", "a"}));
 }
 
 TEST_P(JobStoreConformance, RemoveForgetsJobEventsAndRequestIdWhenPermitted) {
@@ -287,7 +296,8 @@ TEST_P(JobStoreConformance, FindsExpiredLeasesAndPassedDeadlinesOldestFirst) {
   EXPECT_TRUE(store_->passed_deadlines(kNoon + Milliseconds(9), 10)->empty());
   EXPECT_EQ(*store_->passed_deadlines(kNoon + Milliseconds(20), 10), (std::vector<std::string>{"a", "b"}));
   ASSERT_TRUE(lease());
-  EXPECT_EQ(store_->passed_deadlines(kNoon + Milliseconds(20), 10)->size(), 1u);  // running ones are the lease's
+  EXPECT_EQ(store_->passed_deadlines(kNoon + Milliseconds(20), 10)->size(),
+            1u);  // running ones are the lease's
   EXPECT_TRUE(store_->expired_leases(kNoon + kPolicy.lease - Milliseconds(1), 10)->empty());
   EXPECT_EQ(*store_->expired_leases(kNoon + kPolicy.lease, 10), (std::vector<std::string>{"b"}));
 }
@@ -308,9 +318,14 @@ TEST_P(JobStoreConformance, TheListenerHearsOfEachCommitBeforeTheWriteReturnsAnd
   const auto job = lease();
   ASSERT_TRUE(beat("a", job->lease.fencing_token, 2).ok());
   EXPECT_FALSE(beat("a", 999, 2).ok());
-  ASSERT_TRUE(store_->modify("a", [&](const JobRecord& r) {
-    return decide_complete(r, completion("a", job->lease.fencing_token, v1::JOB_STATE_SUCCEEDED), kNoon, kPolicy);
-  }).ok());
+  ASSERT_TRUE(store_
+                  ->modify("a",
+                           [&](const JobRecord& r) {
+                             return decide_complete(
+                                 r, completion("a", job->lease.fencing_token, v1::JOB_STATE_SUCCEEDED), kNoon,
+                                 kPolicy);
+                           })
+                  .ok());
   ASSERT_TRUE(store_->remove("a", permit_delete).ok());
   EXPECT_EQ(ear.heard,
             (std::vector<std::string>{"a state 1", "a state 2", "a event 4", "a state 5", "a removed"}));

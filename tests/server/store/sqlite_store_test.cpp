@@ -65,7 +65,8 @@ TEST(Migrations, AreNumberedFromOneWithoutGap) {
 TEST(Migrations, ContinueFromTheVersionThatIsThere) {
   TemporaryFolder folder;
   const auto database = open_database(folder.path() / "db");
-  const Migration steps[] = {{1, "one", "CREATE TABLE one (x INTEGER)"}, {2, "two", "CREATE TABLE two (x INTEGER)"}};
+  const Migration steps[] = {{1, "one", "CREATE TABLE one (x INTEGER)"},
+                             {2, "two", "CREATE TABLE two (x INTEGER)"}};
   ASSERT_TRUE(migrate(*database, std::span(steps, 1)).ok());
   ASSERT_TRUE(migrate(*database, steps).ok());
   EXPECT_EQ(integer_of(*database, "SELECT count(*) FROM one, two"), 0);
