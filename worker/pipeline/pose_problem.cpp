@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/pipeline/pose_problem.h"
 
+#include <algorithm>
+
+#include "worker/frame/convex_region.h"
 #include "worker/frame/lump_skin.h"
 #include "worker/pipeline/place_loads.h"
 
@@ -65,9 +68,13 @@ Result<FrameProblem> pose_problem(const Solid& solid, const Contact& contact, co
   problem.frame = sampled.frame;
   problem.displacement_limit_mm = options.displacement_limit_mm;
   const PrinterProfile& printer = request.printer;
-  for (const Strut& strut : sampled.frame.struts)
-    problem.bounds.push_back({printer.min_radius_mm,
-                              strut.is_skin ? printer.skin_thickness_mm() : printer.max_internal_radius_mm});
+  const std::vector<double> clearance_mm = strut_clearance_mm(sampled.frame, skin);
+  for (std::size_t j = 0; j < sampled.frame.struts.size(); ++j) {
+    // What would stand out of M1 is not printed, so it must not be counted on: (7) bounds the radius beside (10).
+    const double upper = sampled.frame.struts[j].is_skin ? printer.skin_thickness_mm()
+                                                         : std::min(printer.max_internal_radius_mm, clearance_mm[j]);
+    problem.bounds.push_back({printer.min_radius_mm, std::max(upper, printer.min_radius_mm)});
+  }
   problem.fixed = hold_contact(sampled.frame, sampled.contact_nodes, Supports::kLeast);
   auto cases = place_loads(loads, solid, sampled.frame);
   if (!cases) return cases.error();
