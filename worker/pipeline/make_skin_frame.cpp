@@ -4,31 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 
-#include "worker/frame/convex_region.h"
 #include "worker/mesh/write_stl.h"
 #include "worker/pipeline/pose_problem.h"
+#include "worker/pipeline/solve_and_merge.h"
 #include "worker/pipeline/write_json.h"
 #include "worker/problem/problem_file.h"
 
 namespace skinframe {
 namespace {
 
-// Seconds since the last lap, under the stage's name.
-class Laps {
- public:
-  explicit Laps(std::map<std::string, double>* seconds) : seconds_(seconds) {}
-  void lap(const std::string& stage) {
-    const auto now = std::chrono::steady_clock::now();
-    (*seconds_)[stage] = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-  }
-
- private:
-  std::map<std::string, double>* seconds_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 // Upright, and turned by 90 degrees about z if that helps.
 Status fits_tray(const Solid& solid, const PrinterProfile& printer) {
@@ -67,69 +52,6 @@ PrinterReport begin_report(const PrinterRequest& request) {
   report.price_per_kg = request.price_per_kg;
   report.warnings = honest_warnings(request.printer);
   return report;
-}
-
-OptimizeOptions optimize_options(const JobOptions& options, const Skin& skin) {
-  OptimizeOptions out;
-  out.order = options.order == StageOrder::kPaper ? OptimizeOptions::Order::kPaper : OptimizeOptions::Order::kTight;
-  out.convex_regions = [&skin](const Frame& frame, const std::vector<double>& radii_mm) {
-    return convex_regions(frame, radii_mm, skin);
-  };
-  out.accepts = [&skin](const Frame& frame, const std::vector<double>& radii_mm) {
-    return struts_inside(frame, radii_mm, skin);
-  };
-  return out;
-}
-
-// --no-optimize: every radius at its lower bound, nothing removed, no limit claimed.
-OptimizeResult at_lower_bounds(FrameProblem problem) {
-  OptimizeResult result;
-  std::vector<double> areas;
-  for (std::size_t j = 0; j < problem.frame.struts.size(); ++j)
-    areas.push_back(area_bounds(problem, static_cast<int>(j)).lower_mm2);
-  result.radii_mm = radii_of(areas);
-  result.problem = std::move(problem);
-  const auto responses = solve_equilibrium(result.problem, areas);
-  for (const CaseResponse& response : responses) result.displacements_mm.push_back(response.displacements_mm);
-  result.evaluation = evaluate(result.problem, result.radii_mm, responses);
-  const Frame& frame = result.problem.frame;
-  result.initial = result.size = result.topology = result.geometry = {static_cast<int>(frame.nodes_mm.size()),
-                                                                      static_cast<int>(frame.struts.size()),
-                                                                      result.evaluation.frame_volume_mm3};
-  return result;
-}
-
-std::string termination_name(Termination termination) {
-  switch (termination) {
-    case Termination::kOptimal: return "OPTIMAL";
-    case Termination::kInfeasible: return "INFEASIBLE";
-    case Termination::kIterationLimit: return "ITERATION_LIMIT";
-  }
-  return "INTERNAL";
-}
-
-void fill_statistics(const PreparedSolid& prepared, const Skin& skin, BalanceState balance, PrinterReport* report) {
-  const OptimizeResult& result = *report->optimised;
-  Statistics& s = report->statistics;
-  s.solid_volume_mm3 = prepared.solid.volume_mm3();
-  s.skin_volume_mm3 = skin.volume_mm3;
-  s.frame_volume_mm3 = result.evaluation.frame_volume_mm3;
-  s.total_volume_mm3 = s.skin_volume_mm3 + s.frame_volume_mm3;
-  s.ratio = s.total_volume_mm3 / s.solid_volume_mm3;
-  s.skin_nodes = result.problem.frame.skin_node_count;
-  s.nodes = static_cast<int>(result.problem.frame.nodes_mm.size());
-  s.struts = static_cast<int>(result.problem.frame.struts.size());
-  s.max_displacement_mm = result.evaluation.max_displacement_mm;
-  if (prepared.contact.hull.size() >= 3)
-    s.balance_margin_mm =
-        signed_margin_mm(prepared.contact.hull, result.evaluation.centre_of_gravity_mm.head<2>());
-  switch (balance) {
-    case BalanceState::kEnforced:
-      s.balance = report->reason == Reason::kInfeasible || report->termination == "NOT_OPTIMIZED" ? "not_claimed" : "holds";
-      break;
-    case BalanceState::kNotStanding: s.balance = "not_standing"; break;
-    case BalanceState::kOff: s.balance = "off"; break;
-  }
 }
 
 }  // namespace
@@ -177,41 +99,23 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
         "the solid does not stand on its lowest plane: its centre of gravity is {:.1f} mm outside the base contact, so "
         "balance is not enforced (see --up and --balance)",
         -prepared.contact.margin_mm));
-  if (job.options.no_optimize) {
-    report.optimised = at_lower_bounds(std::move(problem).value());
-    report.termination = "NOT_OPTIMIZED";
-    report.termination_detail = "radii stand at their lower bounds as asked; no limit is claimed";
-  } else {
-    auto optimised = optimize_frame(*problem, optimize_options(job.options, *skin), context);
-    if (!optimised) return optimised.error();
-    report.optimised = std::move(optimised).value();
-    report.termination = termination_name(report.optimised->reason);
-    report.termination_detail = report.optimised->detail;
-  }
+
+  auto merged = solve_and_merge({prepared, *skin, job.options, balance, laps}, std::move(problem).value(), &report, context);
+  if (!merged) return merged.error();
+
   const OptimizeResult& result = *report.optimised;
   report.seconds.insert(result.seconds.begin(), result.seconds.end());
-  laps.lap("optimize");
-  if (report.termination == "INFEASIBLE") {
-    report.reason = Reason::kInfeasible;
-    report.detail = result.detail;
-  }
-  fill_statistics(prepared, *skin, balance, &report);
-
-  context.report({.stage = Stage::kExport, .frame_volume_mm3 = result.evaluation.frame_volume_mm3});
   const auto folder = out_dir / printer.id;
   auto frame_json = to_json(result.problem, result.radii_mm, result.displacements_mm);
   if (auto written = write_json(folder / "frame.json", frame_json); !written) return written.error();
-  if (report.reason != Reason::kNone) return report;
-
-  auto merged = merge_solid(prepared.solid, *skin, result.problem.frame, result.radii_mm,
-                            ExportOptions{.voxel_mm = job.options.voxel_mm}, context);
-  if (!merged) return merged.error();
-  if (auto written = write_stl(merged->mesh, folder / "skin-frame.stl"); !written) return written.error();
-  report.voxel_mm = merged->voxel_mm;
-  report.statistics.printed_volume_mm3 = merged->volume_mm3;
-  report.statistics.printed_ratio = merged->volume_mm3 / prepared.solid.volume_mm3();
-  report.statistics.weight_g = merged->volume_mm3 * request.material.density_g_cm3 * 1e-3;
-  laps.lap("export");
+  if (!merged.value()) return report;
+  const PrintableMesh& printable = *merged.value();
+  if (auto written = write_stl(printable.mesh, folder / "skin-frame.stl"); !written) return written.error();
+  report.voxel_mm = printable.voxel_mm;
+  report.statistics.printed_volume_mm3 = printable.volume_mm3;
+  report.statistics.printed_ratio = printable.volume_mm3 / prepared.solid.volume_mm3();
+  report.statistics.weight_g = printable.volume_mm3 * request.material.density_g_cm3 * 1e-3;
+  laps.lap("write");
   return report;
 }
 

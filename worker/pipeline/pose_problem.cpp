@@ -49,7 +49,8 @@ BalanceState decide_balance(BalanceMode mode, const Contact& contact) {
   SKINFRAME_CHECK(false);
 }
 
-std::vector<HalfPlane> balance_half_planes(const Polygon2& hull) {
+std::vector<HalfPlane> balance_half_planes(const Polygon2& whole_hull) {
+  const Polygon2 hull = inscribed_polygon(whole_hull, kMaxBalanceEdges);
   std::vector<HalfPlane> planes;
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Eigen::Vector2d edge = hull[(i + 1) % hull.size()] - hull[i];

@@ -28,6 +28,8 @@ BalanceState decide_balance(BalanceMode mode, const Contact& contact);
 // The hull of the contact as half planes, drawn in by kBalanceReserveMm so that the printed mesh, whose struts overlap,
 // stands as well as the nominal model does.
 inline constexpr double kBalanceReserveMm = 0.3;
+// Each half plane is a dense row of the optimiser: of a hull with more edges an inscribed polygon stands in.
+inline constexpr int kMaxBalanceEdges = 24;
 std::vector<HalfPlane> balance_half_planes(const Polygon2& hull);
 
 Result<FrameProblem> pose_problem(const Solid& solid, const Contact& contact, const Skin& skin, const SampledFrame& sampled,

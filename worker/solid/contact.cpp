@@ -56,6 +56,24 @@ Polygon2 contact_hull(const TriangleMesh& mesh, double tolerance_mm) {
   return convex_hull(std::move(points));
 }
 
+Polygon2 inscribed_polygon(Polygon2 hull, int max_corners) {
+  SKINFRAME_CHECK(max_corners >= 3);
+  while (hull.size() > static_cast<std::size_t>(max_corners)) {
+    std::size_t least = 0;
+    double least_area = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < hull.size(); ++i) {
+      const Point& before = hull[(i + hull.size() - 1) % hull.size()];
+      const double area = cross(before, hull[i], hull[(i + 1) % hull.size()]);
+      if (area < least_area) {
+        least = i;
+        least_area = area;
+      }
+    }
+    hull.erase(hull.begin() + static_cast<std::ptrdiff_t>(least));
+  }
+  return hull;
+}
+
 double signed_margin_mm(const Polygon2& hull, const Point& point) {
   double nearest = std::numeric_limits<double>::infinity();
   bool inside = hull.size() >= 3;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/solid/contact.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tests/worker/solid/shapes.h"
@@ -87,6 +90,21 @@ TEST(Contact, APointOrEdgeIsNoStand) {
   for (auto& v : edge.vertices) v = Eigen::Vector3d(v.x() - v.z(), v.y(), v.x() + v.z());
   const Polygon2 hull = contact_hull(edge, 0);
   EXPECT_EQ(hull.size(), 2u);
+}
+
+TEST(InscribedPolygon, KeepsItsCornersAndLosesLessThanAHundredthOfACircle) {
+  Polygon2 circle;
+  for (int i = 0; i < 300; ++i) circle.emplace_back(std::cos(2 * M_PI * i / 300), std::sin(2 * M_PI * i / 300));
+  const Polygon2 few = inscribed_polygon(circle, 24);
+  ASSERT_EQ(few.size(), 24u);
+  for (const auto& corner : few) EXPECT_NE(std::find(circle.begin(), circle.end(), corner), circle.end());
+  EXPECT_GT(signed_margin_mm(few, {0, 0}), 0.97);
+  EXPECT_LE(signed_margin_mm(few, {0, 0}), 1.0);
+}
+
+TEST(InscribedPolygon, LeavesAPolygonOfFewCornersAlone) {
+  const Polygon2 square = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+  EXPECT_EQ(inscribed_polygon(square, 24), square);
 }
 
 }  // namespace

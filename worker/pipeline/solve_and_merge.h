@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The optimised frame and the mesh that is printed of it, in rounds: the nominal model counts overlapping struts twice, so
+// its centre of gravity is not quite that of the print. Where balance is claimed, what the print lacks is asked of the
+// model as well, until the printed mesh itself stands.
+#pragma once
+
+#include <optional>
+
+#include "worker/pipeline/laps.h"
+#include "worker/pipeline/pose_problem.h"
+#include "worker/pipeline/prepare_solid.h"
+#include "worker/report/report.h"
+#include "worker/run/run_context.h"
+
+namespace skinframe {
+
+inline constexpr int kMaxBalanceRounds = 4;  // beyond the first
+
+struct SolveSetting {
+  const PreparedSolid& prepared;
+  const Skin& skin;
+  const JobOptions& options;
+  BalanceState balance;
+  Laps& laps;
+};
+
+// Fills the report's optimised frame, statistics, termination and reason. No mesh when the job is infeasible.
+Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting, FrameProblem problem,
+                                                     PrinterReport* report, RunContext& context);
+
+}  // namespace skinframe
