@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "worker/export/keep_wall.h"
 #include "worker/export/strut_level_set.h"
 #include "worker/export/thin_out.h"
 #include "worker/frame/vertex_graph.h"
@@ -26,7 +27,6 @@ constexpr double kMaxSurfaceSquares = 3e6;  // as in build_skin.cpp: some 600 MB
 constexpr double kVoxelInRadii = 0.6;       // of the thinnest strut
 // Of the thinning: a sum over planes, so the surface itself stays much nearer.
 constexpr double kThinningInVoxels = 0.3;
-constexpr double kWallSlackInVoxels = 0.1;  // what the distance field itself cannot tell
 
 Result<double> choose_voxel(const ExportOptions& options, const Skin& skin,
                             const std::vector<double>& radii_mm, double area_mm2) {
@@ -87,19 +87,6 @@ TriangleMesh drop_small_shells(const TriangleMesh& cavity, double smallest_mm3, 
   return kept;
 }
 
-// Interpolation and thinning cut corners where M is concave, and the wall is thinner there by a part of a voxel.
-// Those vertices go back to the skin's depth, along the way to the nearest point of M.
-void keep_wall(TriangleMesh& cavity, const Skin& skin, double voxel) {
-  for (auto& vertex : cavity.vertices) {
-    const double depth = -skin.field.at(vertex);
-    if (depth >= skin.thickness_mm - kWallSlackInVoxels * voxel) continue;
-    const Eigen::Vector3d outward = skin.field.gradient(vertex);
-    if (outward.norm() < 0.5) continue;  // the medial axis: no way is the nearest
-    vertex -= (skin.thickness_mm - depth) * outward.normalized();
-    vertex = vertex.cast<float>().cast<double>();
-  }
-}
-
 Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Frame& frame,
                             const std::vector<double>& radii_mm, const ExportOptions& options,
                             const RunContext& context) {
@@ -122,9 +109,9 @@ Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Fr
   if (context.cancelled()) return cancelled_error();
   if (manifold && options.max_triangles > 0) {
     thin_out(cavity, options.max_triangles, kThinningInVoxels * *voxel);
-    keep_wall(cavity, skin, *voxel);
-    manifold = mend_edges(cavity).manifold;  // places rounded to float may fall together
   }
+  keep_wall(cavity, mesh, skin, *voxel);
+  manifold = manifold && mend_edges(cavity).manifold;  // places rounded to float may fall together
   if (!manifold) return internal_error("the boundary of the cavity is not closed: try another --voxel");
   result.cavity_volume_mm3 = signed_volume(cavity);
   result.volume_mm3 = signed_volume(mesh) - result.cavity_volume_mm3;
