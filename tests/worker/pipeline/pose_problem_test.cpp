@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "tests/worker/pipeline/box_body.h"
 
 namespace skinframe {
