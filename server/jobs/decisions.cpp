@@ -111,6 +111,15 @@ void lose_attempt(Change& change, v1::Reason reason, const std::string& why, Tim
   }
 }
 
+// A worker that stops gives its job back in good order: the job is not to blame, so that no attempt counts as
+// lost and nothing rests.
+void hand_back(Change& change, Time now) {
+  JobRecord& record = change.record;
+  record.not_before = now;
+  record.job.clear_printers();  // the next attempt starts from nothing
+  move_job(change, Trigger::kHandedBack, v1::REASON_UNSPECIFIED, "its worker stopped; queued again", now);
+}
+
 }  // namespace
 
 Change decide_submit(JobRecord record, Time now) {
@@ -177,8 +186,12 @@ Decision decide_complete(const JobRecord& record, const v1::CompleteRequest& req
   Change change{record, {}};
   change.record.completion_digest = digest;
   if (request.state() == v1::JOB_STATE_CANCELLED) {
-    if (must_stop(record, now)) take_printer_results(change, request.printers(), now);
-    lose_attempt(change, v1::REASON_CRASHED, "its worker gave it back", now, policy);
+    if (!must_stop(record, now)) {
+      hand_back(change, now);
+      return change;
+    }
+    take_printer_results(change, request.printers(), now);
+    lose_attempt(change, v1::REASON_CRASHED, "its worker stopped it", now, policy);
     return change;
   }
   if (request.retryable()) {

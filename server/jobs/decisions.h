@@ -41,7 +41,8 @@ bool must_stop(const JobRecord& record, Time now);
 
 // A completion by the token's holder. The same one again is nothing; ABORTED: the token is no longer the
 // job's. A finished result is accepted even when the job was to stop meanwhile. CANCELLED without anybody's
-// wish, and a retryable failure, are a lost attempt.
+// wish is a worker that stops: the job is queued again at once and no attempt is lost. A retryable failure is
+// a lost attempt.
 Decision decide_complete(const JobRecord& record, const v1::CompleteRequest& request, Time now,
                          const AttemptPolicy& policy);
 

@@ -13,14 +13,15 @@ constexpr std::array kTransitions = {
     Transition{v1::JOB_STATE_RUNNING, Trigger::kSucceeded, v1::JOB_STATE_SUCCEEDED},
     Transition{v1::JOB_STATE_RUNNING, Trigger::kFailed, v1::JOB_STATE_FAILED},
     Transition{v1::JOB_STATE_RUNNING, Trigger::kAttemptLost, v1::JOB_STATE_QUEUED},
+    Transition{v1::JOB_STATE_RUNNING, Trigger::kHandedBack, v1::JOB_STATE_QUEUED},
     Transition{v1::JOB_STATE_RUNNING, Trigger::kAttemptsUsedUp, v1::JOB_STATE_FAILED},
     Transition{v1::JOB_STATE_RUNNING, Trigger::kCancelled, v1::JOB_STATE_CANCELLED},
     Transition{v1::JOB_STATE_RUNNING, Trigger::kDeadlinePassed, v1::JOB_STATE_FAILED},
 };
 
-constexpr std::array kTriggers = {Trigger::kLeased,        Trigger::kSucceeded,      Trigger::kFailed,
-                                  Trigger::kAttemptLost,   Trigger::kAttemptsUsedUp, Trigger::kCancelled,
-                                  Trigger::kDeadlinePassed};
+constexpr std::array kTriggers = {Trigger::kLeased,      Trigger::kSucceeded,     Trigger::kFailed,
+                                  Trigger::kAttemptLost, Trigger::kHandedBack,    Trigger::kAttemptsUsedUp,
+                                  Trigger::kCancelled,   Trigger::kDeadlinePassed};
 
 }  // namespace
 
@@ -64,6 +65,8 @@ std::string_view trigger_name(Trigger trigger) {
       return "failed";
     case Trigger::kAttemptLost:
       return "attempt lost";
+    case Trigger::kHandedBack:
+      return "handed back";
     case Trigger::kAttemptsUsedUp:
       return "attempts used up";
     case Trigger::kCancelled:

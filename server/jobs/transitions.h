@@ -4,10 +4,11 @@
 //
 //   state      who moves a job into it                       after a crash of the server
 //   QUEUED     SubmitJob; the lease reaper or a retryable    still queued: the row is the queue
-//              Complete when attempts are left
-//   RUNNING    Lease, with a new fencing token               still running: the worker's token is in the
-//   store, its
-//                                                            heartbeats go on; without them the lease expires
+//              Complete when attempts are left; a worker
+//              that stops and hands the job back
+//   RUNNING    Lease, with a new fencing token               still running: the store holds the worker's
+//                                                            token; its heartbeats go on, and without them
+//                                                            the lease expires
 //   SUCCEEDED  Complete by the token's holder                final
 //   FAILED     Complete, the lease reaper when attempts are  final
 //              used up, the deadline duty
@@ -29,7 +30,8 @@ enum class Trigger {
   kSucceeded,       // the worker completed it
   kFailed,          // the worker completed it: the job itself failed, another attempt would not help
   kAttemptLost,     // the attempt ended without a result, and attempts are left
-  kAttemptsUsedUp,  // the same, and none is left
+  kHandedBack,      // the worker stopped and gave the job back; no attempt is lost
+  kAttemptsUsedUp,  // an attempt ended without a result, and none is left
   kCancelled,       // the user's wish came true: at once when queued, by worker or lease end when running
   kDeadlinePassed,  // found queued by the deadline duty, or stopped by the worker, or its lease ended
 };

@@ -26,6 +26,14 @@ Conclusion cancelled() {
   return out;
 }
 
+// CANCELLED that nobody asked for: the server queues the job again, and no attempt counts as lost.
+Conclusion handed_back() {
+  Conclusion out;
+  out.outcome.state = v1::JOB_STATE_CANCELLED;
+  out.outcome.detail = "worker stopped";
+  return out;
+}
+
 std::string last_words(const AttemptEnd& end) {
   return end.last_log_lines.empty() ? std::string() : "; its last words: " + end.last_log_lines;
 }
@@ -72,7 +80,7 @@ Conclusion conclude(const AttemptEnd& end) {
     case StopCause::kDeadline:
       return failed(v1::REASON_TIMED_OUT, "the job's deadline passed while it ran", false);
     case StopCause::kWorkerStopped:
-      return failed(v1::REASON_CRASHED, "worker stopped", true);
+      return handed_back();
     case StopCause::kLeaseLost:
     case StopCause::kNone:
       break;

@@ -16,7 +16,7 @@ enum class StopCause {
   kCancelled,      // the server said so in a heartbeat
   kLeaseLost,      // ABORTED, or no heartbeat came through until the lease's expiry: nobody wants the result
   kDeadline,       // of the job
-  kWorkerStopped,  // SIGTERM to the agent
+  kWorkerStopped,  // SIGTERM to the agent: the job is handed back, no attempt is lost
 };
 
 struct Conclusion {

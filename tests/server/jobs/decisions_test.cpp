@@ -139,10 +139,28 @@ TEST(Complete, CancelledEndsAJobThatWasAskedTo) {
   EXPECT_EQ(done.job.state(), v1::JOB_STATE_CANCELLED);
 }
 
-TEST(Complete, CancelledWithoutAnybodysWishIsALostAttempt) {
-  const JobRecord job =
-      after(decide_complete(running(), completion("job", 7, v1::JOB_STATE_CANCELLED), kNoon, kPolicy));
+TEST(Complete, CancelledWithoutAnybodysWishQueuesAgainAtOnceAndLosesNoAttempt) {
+  JobRecord record = running();
+  record.lost_attempts = kPolicy.max_attempts - 1;  // one more would end the job
+  record.job.add_printers()->set_printer_id("p");
+  const Time now = kNoon + seconds(3);
+  const Decision decision =
+      decide_complete(record, completion("job", 7, v1::JOB_STATE_CANCELLED), now, kPolicy);
+  const JobRecord job = after(decision);
   EXPECT_EQ(job.job.state(), v1::JOB_STATE_QUEUED);
+  EXPECT_EQ(job.lost_attempts, record.lost_attempts);
+  EXPECT_EQ(job.not_before, now);
+  EXPECT_EQ(job.job.printers_size(), 0);
+  ASSERT_EQ((*decision)->events.size(), 1u);
+  EXPECT_EQ((*decision)->events[0].state().detail(), "its worker stopped; queued again");
+}
+
+TEST(Complete, HandedBackTwiceIsQueuedOnce) {
+  const auto request = completion("job", 7, v1::JOB_STATE_CANCELLED);
+  const JobRecord once = after(decide_complete(running(), request, kNoon, kPolicy));
+  const Decision again = decide_complete(once, request, kNoon, kPolicy);
+  ASSERT_TRUE(again.ok());
+  EXPECT_FALSE(again->has_value());
 }
 
 TEST(LostAttempt, QueuesAgainNotBeforeTheBackoffAndForgetsPrinters) {

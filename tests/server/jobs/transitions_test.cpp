@@ -21,6 +21,7 @@ const std::map<std::pair<v1::JobState, Trigger>, v1::JobState> kPicture = {
     {{v1::JOB_STATE_RUNNING, Trigger::kSucceeded}, v1::JOB_STATE_SUCCEEDED},
     {{v1::JOB_STATE_RUNNING, Trigger::kFailed}, v1::JOB_STATE_FAILED},
     {{v1::JOB_STATE_RUNNING, Trigger::kAttemptLost}, v1::JOB_STATE_QUEUED},
+    {{v1::JOB_STATE_RUNNING, Trigger::kHandedBack}, v1::JOB_STATE_QUEUED},
     {{v1::JOB_STATE_RUNNING, Trigger::kAttemptsUsedUp}, v1::JOB_STATE_FAILED},
     {{v1::JOB_STATE_RUNNING, Trigger::kCancelled}, v1::JOB_STATE_CANCELLED},
     {{v1::JOB_STATE_RUNNING, Trigger::kDeadlinePassed}, v1::JOB_STATE_FAILED},

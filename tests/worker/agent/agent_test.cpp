@@ -226,8 +226,8 @@ TEST_F(AgentTest, AStoppedWorkerHandsItsJobBackAtOnce) {
   ASSERT_TRUE(wait_for([&] { return !workers_.heartbeats.empty(); }));
   stop_agent();
   const auto done = completion();
-  EXPECT_EQ(done.reason(), v1::REASON_CRASHED);
-  EXPECT_TRUE(done.retryable());
+  EXPECT_EQ(done.state(), v1::JOB_STATE_CANCELLED);
+  EXPECT_FALSE(done.retryable());
   EXPECT_EQ(done.detail(), "worker stopped");
 }
 

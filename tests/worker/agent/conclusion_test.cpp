@@ -75,9 +75,9 @@ TEST(Conclusion, WhoStoppedItDecidesHowItEnded) {
   EXPECT_EQ(conclude(end).outcome.reason, v1::REASON_TIMED_OUT);
   EXPECT_FALSE(conclude(end).retryable);
   end.stop = StopCause::kWorkerStopped;
-  EXPECT_EQ(conclude(end).outcome.reason, v1::REASON_CRASHED);
+  EXPECT_EQ(conclude(end).outcome.state, v1::JOB_STATE_CANCELLED);
   EXPECT_EQ(conclude(end).outcome.detail, "worker stopped");
-  EXPECT_TRUE(conclude(end).retryable);
+  EXPECT_FALSE(conclude(end).retryable);
 }
 
 TEST(Conclusion, ALostLeaseIsReportedToNobodyNotEvenASuccess) {
