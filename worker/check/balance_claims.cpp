@@ -67,8 +67,7 @@ double margin_mm(const Polygon& hull, const Eigen::Vector2d& p) {
 
 }  // namespace
 
-void claim_balance(const ExportedPrinter& result, const TriangleMesh& outer_mesh, Verdict* verdict) {
-  const ExportedFrame& frame = result.frame;
+Eigen::Vector3d nominal_centre_of_gravity_mm(const ExportedFrame& frame) {
   Eigen::Vector3d moment = frame.skin_mass_weight_n * frame.skin_centroid_mm;
   double weight = frame.skin_mass_weight_n;
   for (const ExportedStrut& s : frame.struts) {
@@ -77,7 +76,12 @@ void claim_balance(const ExportedPrinter& result, const TriangleMesh& outer_mesh
     moment += 0.5 * w * (a + b);
     weight += w;
   }
-  const Eigen::Vector2d nominal = (moment / weight).head<2>();
+  return moment / weight;
+}
+
+void claim_balance(const ExportedPrinter& result, const TriangleMesh& outer_mesh, Verdict* verdict) {
+  const ExportedFrame& frame = result.frame;
+  const Eigen::Vector2d nominal = nominal_centre_of_gravity_mm(frame).head<2>();
   const Polygon hull = convex_hull(contact_points(outer_mesh, bounding_box(outer_mesh).min.z() + kContactToleranceMm));
   const double nominal_margin = margin_mm(hull, nominal);
   const Eigen::Vector2d printed = volume_centroid(*result.merged).head<2>();

@@ -31,6 +31,7 @@ Verdict judge(const ExportedPrinter& result) {
   const Surface outer(outer_mesh);
   claim_mesh(result, outer_mesh, cavity, outer, &verdict);
   claim_frame(result, &outer, &verdict);
+  claim_printed_struts(result, cavity, outer, &verdict);
   claim_mechanics(result, &verdict);
   claim_balance(result, outer_mesh, &verdict);
   return verdict;

@@ -18,8 +18,15 @@ void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, c
 // Radii (9, 10), slenderness (4, 5), triangulation, counts and nominal volumes (12), struts inside M (7).
 void claim_frame(const ExportedPrinter& result, const Surface* outer, Verdict* verdict);
 
+// The struts of frame.json stand in skin-frame.stl: solid about their axes, wherever these run below the skin.
+void claim_printed_struts(const ExportedPrinter& result, const TriangleMesh& cavity, const Surface& outer,
+                          Verdict* verdict);
+
 // Equilibrium (1), stresses (2, 3), displacement (6): assembled and solved anew, in the paper's model.
 void claim_mechanics(const ExportedPrinter& result, Verdict* verdict);
+
+// Of skin and struts together, each strut counted in full.
+Eigen::Vector3d nominal_centre_of_gravity_mm(const ExportedFrame& frame);
 
 // Balance (8): of the nominal model, and of the printed mesh itself.
 void claim_balance(const ExportedPrinter& result, const TriangleMesh& outer_mesh, Verdict* verdict);

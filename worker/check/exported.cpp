@@ -87,6 +87,11 @@ ExportedFrame parse_frame(const json& file) {
     frame.skin_mass_weight_n = file.at("skin_mass").at("weight_n").get<double>();
     frame.skin_centroid_mm = vector3(file.at("skin_mass").at("centroid_mm"));
   }
+  if (file.contains("balance_half_planes"))
+    for (const json& plane : file.at("balance_half_planes"))
+      frame.balance_half_planes.emplace_back(
+          Eigen::Vector2d(plane.at("normal").at(0).get<double>(), plane.at("normal").at(1).get<double>()),
+          plane.at("offset_mm").get<double>());
   for (const json& item : file.at("load_cases")) {
     ExportedLoadCase load_case;
     load_case.name = item.at("name").get<std::string>();
@@ -127,6 +132,7 @@ ExportedPrinter parse_printer(const json& item) {
   out.max_shear_ratio = item.at("max_shear_ratio").get<double>();
   out.min_radius_mm = item.at("min_radius_mm").get<double>();
   out.balance = item.at("balance").get<std::string>();
+  out.violated_constraint = item.value("violated_constraint", "");
   out.balance_margin_mm = optional_number(item, "balance_margin_mm");
   out.lower_bound_mm3 = optional_number(item, "lower_bound_mm3");
   out.final_nodes = item.at("counts").at("geometry").at("nodes").get<int>();

@@ -39,6 +39,8 @@ struct ExportedFrame {
   std::vector<ExportedLoadCase> load_cases;
   double skin_mass_weight_n = 0;
   Eigen::Vector3d skin_centroid_mm = Eigen::Vector3d::Zero();
+  // Balance as it was asked: normal . (x, y) <= offset.
+  std::vector<std::pair<Eigen::Vector2d, double>> balance_half_planes;
 };
 
 struct ExportedPrinter {
@@ -49,7 +51,7 @@ struct ExportedPrinter {
   double size_volume_mm3 = 0, topology_volume_mm3 = 0, geometry_volume_mm3 = 0;
   double max_displacement_mm = 0, max_axial_ratio = 0, max_shear_ratio = 0, min_radius_mm = 0;
   std::optional<double> balance_margin_mm, lower_bound_mm3, best_reachable_displacement_mm;
-  std::string balance;
+  std::string balance, violated_constraint;
   int final_nodes = 0, final_struts = 0;
   // profile
   double eta_mm = 0, skin_thickness_mm = 0, max_internal_radius_mm = 0, voxel_mm = 0;

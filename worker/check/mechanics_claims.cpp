@@ -89,6 +89,27 @@ bool close(double measured, double reported, double relative) {
   return std::abs(measured - reported) <= relative * std::max({std::abs(measured), std::abs(reported), 1e-9});
 }
 
+// What is called infeasible has to break the constraint that it names.
+void claim_violation(const ExportedPrinter& result, bool stable, bool displaced, bool stretched, bool sheared,
+                     Verdict* verdict) {
+  const std::string& name = result.violated_constraint;
+  if (name == "balance of the printed mesh") {
+    verdict->notes.push_back("infeasible by the balance of the printed mesh, which is not exported: not judged");
+    return;
+  }
+  bool broken = false;
+  if (name == "displacement") broken = displaced;
+  if (name == "axial stress") broken = stretched;
+  if (name == "shear stress") broken = sheared;
+  if (name == "equilibrium") broken = !stable;
+  if (name == "balance")
+    for (const auto& [normal, offset_mm] : result.frame.balance_half_planes)
+      broken |= normal.dot(nominal_centre_of_gravity_mm(result.frame).head<2>()) > offset_mm;
+  verdict->claims.push_back({"infeasible", broken,
+                             fmt::format("the constraint named is \"{}\", and the best frame found {}", name,
+                                         broken ? "breaks it" : "does not break it")});
+}
+
 }  // namespace
 
 void claim_mechanics(const ExportedPrinter& result, Verdict* verdict) {
@@ -146,12 +167,12 @@ void claim_mechanics(const ExportedPrinter& result, Verdict* verdict) {
   const double limit = frame.displacement_limit_mm.value_or(std::numeric_limits<double>::infinity());
   const bool honest = close(worst_displacement, result.max_displacement_mm, kDisplacementTolerance);
   if (result.infeasible()) {
-    // What is claimed is that the limit is not reached, and the best value that is.
     const bool same = !result.best_reachable_displacement_mm ||
                       close(worst_displacement, *result.best_reachable_displacement_mm, 1e-2);
     verdict->claims.push_back({"best reachable displacement (paper model)", honest && same,
                                fmt::format("{:.5f} mm in load case \"{}\", reported {:.5f} mm; limit {:g} mm", worst_displacement,
                                            worst_case, result.max_displacement_mm, limit)});
+    claim_violation(result, stable, worst_displacement > limit, worst.axial > 1, worst.shear > 1, verdict);
     return;
   }
   verdict->claims.push_back(

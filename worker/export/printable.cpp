@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "worker/export/keep_wall.h"
 #include "worker/export/strut_level_set.h"
@@ -24,22 +25,27 @@ namespace {
 
 constexpr double kBandVoxels = 3.0;
 constexpr double kMaxSurfaceSquares = 3e6;  // as in build_skin.cpp: some 600 MB while the grid is made
+constexpr double kFlatBandVoxels = 8.0;     // of the band beside the skin's own depth
+constexpr double kMaxBandVoxels = 3e6 * 24;
 constexpr double kVoxelInRadii = 0.6;       // of the thinnest strut
 // Of the thinning: a sum over planes, so the surface itself stays much nearer.
 constexpr double kThinningInVoxels = 0.3;
 
 Result<double> choose_voxel(const ExportOptions& options, const Skin& skin,
                             const std::vector<double>& radii_mm, double area_mm2) {
-  const double least = std::sqrt(area_mm2 / kMaxSurfaceSquares);
+  // The band about M is deeper, in voxels, the smaller they are; its volume is what memory is taken for.
+  double least = std::sqrt(area_mm2 / kMaxSurfaceSquares);
+  while (area_mm2 / (least * least) * (skin.thickness_mm / least + kFlatBandVoxels) > kMaxBandVoxels) least *= 1.05;
   double thinnest = 0.5 * skin.thickness_mm;
   if (!radii_mm.empty()) thinnest = *std::min_element(radii_mm.begin(), radii_mm.end());
-  const double fallback = std::max(least, kVoxelInRadii * thinnest);
-  const double voxel = options.voxel_mm.value_or(std::min(fallback, skin.thickness_mm));
-  if (voxel < least * (1.0 - 1e-9) || voxel > skin.thickness_mm) {
+  // A coarser grid than that breaks struts into beads.
+  const double most = std::max(least, kVoxelInRadii * thinnest);
+  const double voxel = options.voxel_mm.value_or(most);
+  if (voxel < least * (1.0 - 1e-9) || voxel > most * (1.0 + 1e-9) || least > skin.thickness_mm) {
     return invalid_input(
-        fmt::format("an export grid of {:.3g} mm on a surface of {:.0f} mm2: use a --voxel between "
-                    "{:.3g} and {:.3g} mm or a smaller --size",
-                    voxel, area_mm2, least, skin.thickness_mm));
+        fmt::format("an export grid of {:.3g} mm on a surface of {:.0f} mm2 with struts of radius {:.3g} mm: use a "
+                    "--voxel between {:.3g} and {:.3g} mm{}",
+                    voxel, area_mm2, thinnest, least, most, voxel < most ? " or a smaller --size" : ""));
   }
   return voxel;
 }
@@ -149,6 +155,8 @@ Result<PrintableMesh> merge_solid(const TriangleMesh& closed_mesh, const Skin& s
   try {
     tbb::task_arena arena(std::max(1, context.threads));
     return arena.execute([&] { return merge(closed_mesh, skin, frame, radii_mm, options, context); });
+  } catch (const std::bad_alloc&) {
+    throw;  // the job ends OUT_OF_MEMORY, not INTERNAL
   } catch (const std::exception& e) {
     return internal_error(fmt::format("the struts could not be merged with the skin: {}", e.what()));
   }

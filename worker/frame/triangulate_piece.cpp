@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <new>
 #include <numbers>
 
 #include "worker/frame/half_edge.h"
@@ -27,6 +28,7 @@ using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 constexpr int kRounds = 60;
 constexpr int kRoundsBeforeRim = 10;     // first even, then on the rim
 constexpr double kOntoRim = 0.35;        // in wanted edges: any node this near to the rim goes onto it
+constexpr double kCrowdsNeighbour = 0.3;  // in wanted edges
 constexpr double kCrowdsPin = 0.6;       // in wanted edges
 constexpr double kContactOntoRim = 0.6;  // the contact's outermost nodes come from further
 
@@ -141,6 +143,9 @@ class Relaxation {
       outermost = false;
       for (auto w : mesh.vertices_around_target(mesh.halfedge(v))) outermost = outermost || !in_contact(w);
     }
+    // Two nodes on either side of the rim may have the same nearest point of it; only one may stand there.
+    for (auto w : mesh.vertices_around_target(mesh.halfedge(v)))
+      if ((to_eigen(mesh.point(w)) - q).norm() < kCrowdsNeighbour * traits[v].edge_length_mm) return;
     if (distance <= kOntoRim || outermost) mesh.point(v) = to_cgal(q);
   }
 
@@ -223,6 +228,8 @@ Result<TriangleMesh> triangulate_piece(const TriangleMesh& piece, const PieceSam
     }
     flip_to_delaunay(mesh);
     return to_triangles(mesh);
+  } catch (const std::bad_alloc&) {
+    throw;  // the job ends OUT_OF_MEMORY, not INTERNAL
   } catch (const std::exception& e) {
     return internal_error(fmt::format("the skin nodes could not be placed: {}", e.what()));
   }

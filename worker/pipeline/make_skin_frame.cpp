@@ -92,15 +92,16 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
     report.detail = "balance cannot hold: the base contact has no area; see --up and --balance";
     return report;
   }
-  auto problem = pose_problem(prepared.solid, prepared.contact, *skin, *sampled, request, job.loads, job.options);
-  if (!problem) return problem.error();
+  auto posed = pose_problem(prepared.solid, prepared.contact, *skin, *sampled, request, job.loads, job.options);
+  if (!posed) return posed.error();
+  report.warnings.insert(report.warnings.end(), posed->warnings.begin(), posed->warnings.end());
   if (balance == BalanceState::kNotStanding)
     report.warnings.push_back(fmt::format(
         "the solid does not stand on its lowest plane: its centre of gravity is {:.1f} mm outside the base contact, so "
         "balance is not enforced (see --up and --balance)",
         -prepared.contact.margin_mm));
 
-  auto merged = solve_and_merge({prepared, *skin, job.options, balance, laps}, std::move(problem).value(), &report, context);
+  auto merged = solve_and_merge({prepared, *skin, job.options, balance, laps}, std::move(posed.value().problem), &report, context);
   if (!merged) return merged.error();
 
   const OptimizeResult& result = *report.optimised;

@@ -19,6 +19,22 @@ PrinterOutcome outcome_of(const PrinterReport& report) {
   return outcome;
 }
 
+// A printer that needs more memory than there is ends so, and its memory is free for the next one.
+Result<PrinterReport> make_or_run_out(const PreparedSolid& prepared, const PrinterRequest& printer,
+                                      const JobRequest& request, const std::filesystem::path& out_dir,
+                                      const PipelineObserver& observer, RunContext& context) {
+  try {
+    return make_skin_frame(prepared, printer, request, out_dir, observer, context);
+  } catch (const std::bad_alloc&) {
+    PrinterReport report;
+    report.printer = printer.printer.id;
+    report.material = printer.material.id;
+    report.reason = Reason::kOutOfMemory;
+    report.detail = "more memory was needed than the job may take; use fewer nodes or a larger --voxel";
+    return report;
+  }
+}
+
 }  // namespace
 
 Result<std::vector<PrinterOutcome>> run_pipeline(const JobRequest& request, const std::filesystem::path& out_dir,
@@ -33,7 +49,7 @@ Result<std::vector<PrinterOutcome>> run_pipeline(const JobRequest& request, cons
                            {"printers", nlohmann::json::array()}};
   std::vector<PrinterOutcome> outcomes;
   for (const PrinterRequest& printer : request.printers) {
-    auto made = make_skin_frame(*prepared, printer, request, out_dir, observer, context);
+    auto made = make_or_run_out(*prepared, printer, request, out_dir, observer, context);
     if (!made && made.error().kind == ErrorKind::kCancelled) return made.error();
     if (!made && made.error().kind == ErrorKind::kIo) return made.error();
     PrinterReport part;

@@ -140,16 +140,21 @@ Eigen::Vector3d place_point_mm(const Solid& solid, Place place) {
   return area > 0 ? Eigen::Vector3d(sum / area) : mesh.vertices[furthest];
 }
 
-Result<std::vector<LoadCase>> place_loads(const std::vector<Load>& loads, const Solid& solid, const Frame& frame) {
+Result<PlacedLoads> place_loads(const std::vector<Load>& loads, const Solid& solid, const Frame& frame) {
   const auto empty_case = [&](const std::string& name) {
     return LoadCase{name, true, std::vector<Eigen::Vector3d>(frame.nodes_mm.size(), Eigen::Vector3d::Zero())};
   };
-  std::vector<LoadCase> cases = {empty_case(kSelfWeight)};
+  PlacedLoads placed{{empty_case(kSelfWeight)}, {}};
+  std::vector<LoadCase>& cases = placed.cases;
   for (const Load& load : loads) {
     const bool at_place = std::holds_alternative<Place>(load.where);
     const Eigen::Vector3d centre =
         at_place ? place_point_mm(solid, std::get<Place>(load.where)) : std::get<Eigen::Vector3d>(load.where);
     const Spot nearest = nearest_spot(frame, centre);
+    if (at_place && nearest.distance_mm > load.radius_mm + kMaxDistanceToSkinMm)
+      placed.warnings.push_back(fmt::format(
+          "load \"{}\": the object is thinner than two skins where it acts, and the frame carries it {:.1f} mm away",
+          load.name, nearest.distance_mm));
     if (!at_place && nearest.distance_mm > load.radius_mm + kMaxDistanceToSkinMm)
       return invalid_input(fmt::format(
           "load \"{}\": the point ({:g}, {:g}, {:g}) is {:.1f} mm from the surface; the object stands on z = 0, centred in "
@@ -160,7 +165,7 @@ Result<std::vector<LoadCase>> place_loads(const std::vector<Load>& loads, const 
     if (it == cases.end()) it = cases.insert(cases.end(), empty_case(load.name));
     spread(load, centre, nearest, frame, &*it);
   }
-  return cases;
+  return placed;
 }
 
 }  // namespace skinframe

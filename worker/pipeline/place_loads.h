@@ -19,8 +19,13 @@ inline constexpr const char* kSelfWeight = "self-weight";
 // The middle of the connected part of the surface that stands within 1 mm of the furthest point in that direction.
 Eigen::Vector3d place_point_mm(const Solid& solid, Place place);
 
+struct PlacedLoads {
+  std::vector<LoadCase> cases;
+  std::vector<std::string> warnings;  // a place whose nearest skin is far: it is thinner than two skins there
+};
+
 // The self-weight case, then one case a name in order of first use; gravity acts in all. Sums of force_n equal the sums
 // of the loads. Error: kInvalidInput when a load's point is further than the patch's radius and 10 mm from the skin.
-Result<std::vector<LoadCase>> place_loads(const std::vector<Load>& loads, const Solid& solid, const Frame& frame);
+Result<PlacedLoads> place_loads(const std::vector<Load>& loads, const Solid& solid, const Frame& frame);
 
 }  // namespace skinframe

@@ -49,18 +49,20 @@ BalanceState decide_balance(BalanceMode mode, const Contact& contact) {
   SKINFRAME_CHECK(false);
 }
 
-std::vector<HalfPlane> balance_half_planes(const Polygon2& whole_hull) {
+double balance_reserve_mm(const Contact& contact) { return std::clamp(0.5 * contact.margin_mm, 0.0, kBalanceReserveMm); }
+
+std::vector<HalfPlane> balance_half_planes(const Polygon2& whole_hull, double reserve_mm) {
   const Polygon2 hull = inscribed_polygon(whole_hull, kMaxBalanceEdges);
   std::vector<HalfPlane> planes;
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Eigen::Vector2d edge = hull[(i + 1) % hull.size()] - hull[i];
     const Eigen::Vector2d normal = Eigen::Vector2d(edge.y(), -edge.x()).normalized();  // outward of a counter-clockwise hull
-    planes.push_back({normal, normal.dot(hull[i]) - kBalanceReserveMm});
+    planes.push_back({normal, normal.dot(hull[i]) - reserve_mm});
   }
   return planes;
 }
 
-Result<FrameProblem> pose_problem(const Solid& solid, const Contact& contact, const Skin& skin, const SampledFrame& sampled,
+Result<PosedProblem> pose_problem(const Solid& solid, const Contact& contact, const Skin& skin, const SampledFrame& sampled,
                                   const PrinterRequest& request, const std::vector<Load>& loads,
                                   const JobOptions& options) {
   FrameProblem problem;
@@ -77,19 +79,19 @@ Result<FrameProblem> pose_problem(const Solid& solid, const Contact& contact, co
     problem.bounds.push_back({printer.min_radius_mm, std::max(upper, printer.min_radius_mm)});
   }
   problem.fixed = hold_contact(sampled.frame, sampled.contact_nodes, Supports::kLeast);
-  auto cases = place_loads(loads, solid, sampled.frame);
-  if (!cases) return cases.error();
-  problem.load_cases = std::move(cases).value();
+  auto placed = place_loads(loads, solid, sampled.frame);
+  if (!placed) return placed.error();
+  problem.load_cases = std::move(placed.value().cases);
   const double weight_density = problem.material.weight_density_n_mm3();
   for (const double volume : lump_skin_volume_mm3(sampled.frame, skin))
     problem.skin_weight_n.push_back(volume * weight_density);
   problem.skin_mass = {skin.volume_mm3 * weight_density, skin.centroid_mm};
   if (decide_balance(options.balance, contact) == BalanceState::kEnforced)
-    problem.balance = balance_half_planes(contact.hull);
+    problem.balance = balance_half_planes(contact.hull, balance_reserve_mm(contact));
   problem.free_nodes.assign(sampled.frame.nodes_mm.size(), false);
   for (std::size_t i = sampled.frame.skin_node_count; i < problem.free_nodes.size(); ++i) problem.free_nodes[i] = true;
   if (auto valid = validate(problem); !valid) return valid.error();
-  return problem;
+  return PosedProblem{std::move(problem), std::move(placed.value().warnings)};
 }
 
 }  // namespace skinframe

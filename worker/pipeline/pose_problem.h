@@ -25,14 +25,20 @@ std::vector<std::array<bool, 3>> hold_contact(const Frame& frame, const std::vec
 enum class BalanceState { kEnforced, kNotStanding, kOff };
 BalanceState decide_balance(BalanceMode mode, const Contact& contact);
 
-// The hull of the contact as half planes, drawn in by kBalanceReserveMm so that the printed mesh, whose struts overlap,
-// stands as well as the nominal model does.
+// The hull of the contact as half planes, drawn in a little, so that the printed mesh, whose struts overlap, stands as well
+// as the nominal model does: by kBalanceReserveMm, and by no more than half of what the solid itself has.
 inline constexpr double kBalanceReserveMm = 0.3;
+double balance_reserve_mm(const Contact& contact);
 // Each half plane is a dense row of the optimiser: of a hull with more edges an inscribed polygon stands in.
 inline constexpr int kMaxBalanceEdges = 24;
-std::vector<HalfPlane> balance_half_planes(const Polygon2& hull);
+std::vector<HalfPlane> balance_half_planes(const Polygon2& hull, double reserve_mm);
 
-Result<FrameProblem> pose_problem(const Solid& solid, const Contact& contact, const Skin& skin, const SampledFrame& sampled,
+struct PosedProblem {
+  FrameProblem problem;
+  std::vector<std::string> warnings;
+};
+
+Result<PosedProblem> pose_problem(const Solid& solid, const Contact& contact, const Skin& skin, const SampledFrame& sampled,
                                   const PrinterRequest& printer, const std::vector<Load>& loads, const JobOptions& options);
 
 }  // namespace skinframe

@@ -9,6 +9,10 @@
 namespace skinframe {
 namespace {
 
+// The constraint's name in the report when only the print, not the model, fails to stand.
+constexpr const char* kPrintedBalance = "balance of the printed mesh";
+
+
 OptimizeOptions optimize_options(const JobOptions& options, const Skin& skin) {
   OptimizeOptions out;
   out.order = options.order == StageOrder::kPaper ? OptimizeOptions::Order::kPaper : OptimizeOptions::Order::kTight;
@@ -117,6 +121,7 @@ Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting
     if (round == kMaxBalanceRounds) {
       report->reason = Reason::kInfeasible;
       report->termination = "INFEASIBLE";
+      report->optimised->violated_constraint = kPrintedBalance;
       report->detail = report->termination_detail = fmt::format(
           "balance: the centre of gravity of the printed mesh stays {:.2f} mm outside the base contact", -margin_mm);
       fill_statistics(setting, report);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <new>
 
 #include "worker/skin/distance_grids.h"
 #include "worker/skin/level_set.h"
@@ -118,6 +119,8 @@ Result<Skin> build_skin(const TriangleMesh& closed_mesh, const SkinOptions& opti
   try {
     tbb::task_arena arena(std::max(1, context.threads));
     return arena.execute([&] { return build(closed_mesh, options, context); });
+  } catch (const std::bad_alloc&) {
+    throw;  // the job ends OUT_OF_MEMORY, not INTERNAL
   } catch (const std::exception& e) {
     return internal_error(fmt::format("the skin could not be made: {}", e.what()));
   }

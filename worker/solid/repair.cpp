@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <new>
 
 #include "worker/solid/fill_holes.h"
 #include "worker/solid/half_edges.h"
@@ -207,6 +208,8 @@ Result<RepairOutcome> repair(TriangleMesh mesh, const RepairOptions& options, Ru
   if (Status s = check_input(mesh); !s.ok()) return s.error();
   try {
     return run_chain(std::move(mesh), options, context);
+  } catch (const std::bad_alloc&) {
+    throw;  // the job ends OUT_OF_MEMORY, not INTERNAL
   } catch (const std::exception& e) {
     return internal_error(fmt::format("the mesh could not be repaired: {}", e.what()));
   }

@@ -169,6 +169,23 @@ TEST_F(CheckTest, ANodeWithoutAPathToTheBaseIsSeen) {
               Names("every node stands on the base"));
 }
 
+TEST_F(CheckTest, AMeshWithoutTheStrutsIsSeen) {
+  EXPECT_THAT(denied_frame([](json& frame) {
+                // Struts that run through the void: from one skin node straight across the body.
+                frame["struts"].push_back({{"a", 0}, {"b", 30}, {"skin", false}, {"radius_mm", 0.6}, {"min_radius_mm", 0.5},
+                                           {"max_radius_mm", 5}});
+              }),
+              Names("struts are printed"));
+}
+
+TEST_F(CheckTest, AResultCalledInfeasibleThatKeepsItsLimitsIsSeen) {
+  EXPECT_THAT(denied_report([](json& printer) {
+                printer["termination"]["reason"] = "INFEASIBLE";
+                printer["violated_constraint"] = "displacement";
+              }),
+              Names("infeasible"));
+}
+
 TEST_F(CheckTest, AMissingOrBrokenFileIsAnErrorThatNamesIt) {
   const auto error = denied([](const fs::path& copy) { fs::remove(copy / kPrinter / "frame.json"); });
   ASSERT_EQ(error.size(), 1u);

@@ -58,7 +58,7 @@ TEST(Balance, AutoIsEnforcedOnlyWhereTheSolidStands) {
 }
 
 TEST(Balance, HalfPlanesHoldExactlyInsideTheReserve) {
-  const auto planes = balance_half_planes(find_contact(box_solid()).hull);
+  const auto planes = balance_half_planes(find_contact(box_solid()).hull, kBalanceReserveMm);
   ASSERT_EQ(planes.size(), 4u);
   const auto inside = [&](double x, double y) {
     for (const HalfPlane& plane : planes)
@@ -69,6 +69,16 @@ TEST(Balance, HalfPlanesHoldExactlyInsideTheReserve) {
   EXPECT_TRUE(inside(10 - kBalanceReserveMm - 1e-9, 15 - kBalanceReserveMm - 1e-9));
   EXPECT_FALSE(inside(10 - kBalanceReserveMm + 1e-6, 0));
   EXPECT_FALSE(inside(0, -15 + kBalanceReserveMm - 1e-6));
+}
+
+TEST(Balance, TheReserveAsksNoMoreThanTheSolidItselfHas) {
+  Contact contact;
+  contact.margin_mm = 0.2;
+  EXPECT_DOUBLE_EQ(balance_reserve_mm(contact), 0.1);
+  contact.margin_mm = 20;
+  EXPECT_DOUBLE_EQ(balance_reserve_mm(contact), kBalanceReserveMm);
+  contact.margin_mm = -3;
+  EXPECT_DOUBLE_EQ(balance_reserve_mm(contact), 0.0);
 }
 
 }  // namespace
