@@ -47,7 +47,10 @@ class Sizing {
       }
     }
     if (session_.cancelled()) return cancelled();
-    return minimise_volume(start, !hint_mm2.empty());
+    SizedFrame sized = minimise_volume(start, !hint_mm2.empty());
+    if (sized.cancelled || sized.feasible() || balanced_mm2_.empty()) return sized;
+    SizedFrame again = minimise_volume(balanced_mm2_, false);
+    return again.cancelled || again.feasible() ? again : sized;
   }
 
  private:
@@ -154,7 +157,7 @@ class Sizing {
   }
 
   // The frame that leans least, when no areas within the bounds bring the centre of gravity over the base; a
-  // linear program.
+  // linear program. No verdict where its search ended early; what it found is kept in balanced_mm2_.
   std::optional<SizedFrame> least_imbalance() {
     if (problem_.balance.empty()) return std::nullopt;
     const std::vector<double> middle = [&] {
@@ -166,12 +169,17 @@ class Sizing {
       if (evaluated(areas).balance_margin_mm >= 0) return std::nullopt;
     ProgramRequest elastic = request({});
     elastic.elastic = ElasticScope::kBalance;
+    // The moments exceed t by the primal error at most: t < 0 alone does not mean that balance holds.
     const ProgramOutcome outcome =
-        session_.solve(problem_, elastic, middle,
-                       [&](const ProgramVector& point, const KktError&) { return point.elastic < 0; });
+        session_.solve(problem_, elastic, middle, [](const ProgramVector& point, const KktError& error) {
+          return point.elastic < 0 && error.primal <= -point.elastic;
+        });
     if (outcome.end == InteriorPointEnd::kCancelled) return cancelled();
     SizedFrame leaning = at(Termination::kInfeasible, outcome.areas_mm2, "");
-    if (leaning.evaluation.balance_margin_mm >= -kBalanceToleranceMm) return std::nullopt;
+    if (leaning.evaluation.balance_margin_mm >= -kBalanceToleranceMm || !outcome.converged()) {
+      balanced_mm2_ = std::move(leaning.areas_mm2);
+      return std::nullopt;
+    }
     leaning.violated_constraint = "balance";
     leaning.detail = fmt::format(
         "balance cannot be kept: within the bounds on the radii the centre of gravity stays {:.4g} mm "
@@ -207,6 +215,7 @@ class Sizing {
   Session& session_;
   EquilibriumSolver solver_;
   ProgramRequest bounds_;
+  std::vector<double> balanced_mm2_;  // where the search for balance ended; empty: it was not needed
 };
 
 }  // namespace

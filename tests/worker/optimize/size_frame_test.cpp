@@ -132,6 +132,23 @@ TEST(SizeOpt, BalanceThickensWhatWeighsOnTheRightSide) {
   EXPECT_NEAR(r.evaluation.balance_margin_mm, 0, 1e-4);
 }
 
+// The same, where the strut that balances is thicker than the middle of its bounds and all but as thick as
+// they allow.
+TEST(SizeOpt, BalanceJustWithinReachIsReached) {
+  for (double share : {0.55, 0.8, 0.95, 0.99, 0.999}) {
+    FrameProblem problem = bare_problem({{0, 0, 0}, {20, 0, 0}}, {{0, 1}});
+    problem.fixed[0] = problem.fixed[1] = {true, true, true};
+    problem.material.density_g_cm3 = 1e3;
+    const double wanted = share * area(5);
+    problem.skin_mass = {wanted * 1e3 * 1e-9 * 9810 * 20 * 10 / 20, {40, 0, 10}};
+    problem.balance = {{{1, 0}, 20}};
+    problem.load_cases = {load_at(problem, 0, {0, 0, 0}, true)};
+    const OptimizeResult r = size_only(problem);
+    EXPECT_EQ(r.reason, Termination::kOptimal) << share << ": " << r.detail;
+    EXPECT_NEAR(area(r.radii_mm[0]), wanted, 1e-4 * wanted) << share;
+  }
+}
+
 TEST(SizeOpt, BalanceOutOfReachIsNamed) {
   FrameProblem problem = bare_problem({{0, 0, 0}, {20, 0, 0}}, {{0, 1}});
   problem.fixed[0] = problem.fixed[1] = {true, true, true};
