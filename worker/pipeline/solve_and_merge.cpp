@@ -86,6 +86,8 @@ Status solve_frame(const FrameProblem& problem, const JobOptions& options, const
     report->termination_detail = "radii stand at their lower bounds as asked; no limit is claimed";
     return ok_status();
   }
+  context.report({.stage = Stage::kSize, .struts_left = static_cast<int>(problem.frame.struts.size())});
+  if (context.cancelled()) return cancelled_error();
   auto optimised = optimize_frame(problem, optimize_options(options, skin), context);
   if (!optimised) return optimised.error();
   report->optimised = std::move(optimised).value();
