@@ -5,17 +5,19 @@
 #include <grpcpp/grpcpp.h>
 
 #include <functional>
+#include <string_view>
 
 #include "absl/status/status.h"
 #include "server/executor/executor.h"
 
 namespace skinframe::server {
 
-// The codes of both are the same numbers. What is a defect of ours (INTERNAL, UNKNOWN) is logged here.
-grpc::Status to_grpc(const absl::Status& status);
+// The codes of both are the same numbers. A message of more than 1024 bytes is cut to that. What is a defect
+// of ours (INTERNAL, UNKNOWN) is logged here, with the job that the call was about; empty: about none.
+grpc::Status to_grpc(const absl::Status& status, std::string_view job_id = {});
 
-// context, and the request and response that work refers to, live until the call is done.
+// context, and the request and response that work and job_id refer to, live until the call is done.
 grpc::ServerUnaryReactor* answer_on(Executor& executor, grpc::CallbackServerContext* context,
-                                    std::function<absl::Status()> work);
+                                    std::function<absl::Status()> work, std::string_view job_id = {});
 
 }  // namespace skinframe::server

@@ -84,11 +84,14 @@ JobRecord JobService::new_record(const v1::SubmitJobRequest& request) {
 
 grpc::ServerUnaryReactor* JobService::GetJob(grpc::CallbackServerContext* context,
                                              const v1::GetJobRequest* request, v1::Job* response) {
-  return answer_on(parts_.executor, context, [=, this]() -> absl::Status {
-    auto record = parts_.store.get(request->job_id());
-    if (record.ok()) *response = std::move(record->job);
-    return record.status();
-  });
+  return answer_on(
+      parts_.executor, context,
+      [=, this]() -> absl::Status {
+        auto record = parts_.store.get(request->job_id());
+        if (record.ok()) *response = std::move(record->job);
+        return record.status();
+      },
+      request->job_id());
 }
 
 grpc::ServerUnaryReactor* JobService::ListJobs(grpc::CallbackServerContext* context,
@@ -137,19 +140,23 @@ absl::Status JobService::list(const v1::ListJobsRequest& request, v1::ListJobsRe
 
 grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* context,
                                                 const v1::CancelJobRequest* request, v1::Job* response) {
-  return answer_on(parts_.executor, context, [=, this]() -> absl::Status {
-    const Time now = parts_.clock.now();
-    auto after = parts_.store.modify(request->job_id(),
-                                     [now](const JobRecord& record) { return decide_cancel(record, now); });
-    if (after.ok()) *response = std::move(after->job);
-    return after.status();
-  });
+  return answer_on(
+      parts_.executor, context,
+      [=, this]() -> absl::Status {
+        const Time now = parts_.clock.now();
+        auto after = parts_.store.modify(
+            request->job_id(), [now](const JobRecord& record) { return decide_cancel(record, now); });
+        if (after.ok()) *response = std::move(after->job);
+        return after.status();
+      },
+      request->job_id());
 }
 
 grpc::ServerUnaryReactor* JobService::DeleteJob(grpc::CallbackServerContext* context,
                                                 const v1::DeleteJobRequest* request, v1::DeleteJobResponse*) {
-  return answer_on(parts_.executor, context,
-                   [=, this] { return parts_.store.remove(request->job_id(), permit_delete); });
+  return answer_on(
+      parts_.executor, context, [=, this] { return parts_.store.remove(request->job_id(), permit_delete); },
+      request->job_id());
 }
 
 grpc::ServerWriteReactor<v1::JobEvent>* JobService::WatchJob(grpc::CallbackServerContext*,

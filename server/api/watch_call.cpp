@@ -125,7 +125,7 @@ void WatchCall::end(const absl::Status& status) {
     phase_ = Phase::kEnded;
   }
   parts_.hub.unsubscribe(job_id_, this);
-  Finish(to_grpc(status));
+  Finish(to_grpc(status, job_id_));
 }
 
 void WatchCall::OnDone() {

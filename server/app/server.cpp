@@ -5,6 +5,7 @@
 #include <grpcpp/ext/proto_server_reflection_plugin.h>
 #include <grpcpp/grpcpp.h>
 #include <grpcpp/health_check_service_interface.h>
+#include <grpcpp/resource_quota.h>
 #include <spdlog/spdlog.h>
 
 #include <chrono>
@@ -35,6 +36,11 @@ constexpr int kLargestMessageBytes = 4 << 20;
 constexpr const char* kServices[] = {"skinframe.v1.JobService", "skinframe.v1.ArtifactService",
                                      "skinframe.v1.CatalogService", "skinframe.v1.WorkerService"};
 
+// 2000 watches on one channel have room beside the calls of a farm's software.
+constexpr int kMostStreamsOfAConnection = 4'096;
+// For what gRPC buffers, over all connections; near it reads slow down and new connections are refused.
+constexpr std::size_t kCallMemoryBytes = std::size_t{512} << 20;
+
 // A partition is noticed within some 15 s on this side, and clients may ping every 5 s, calls or none,
 // without being thrown out. One port belongs to one server.
 void set_connection_rules(grpc::ServerBuilder& builder) {
@@ -44,7 +50,10 @@ void set_connection_rules(grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 1'000);
   builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  builder.AddChannelArgument(GRPC_ARG_MAX_CONCURRENT_STREAMS, kMostStreamsOfAConnection);
   builder.SetMaxReceiveMessageSize(kLargestMessageBytes);
+  grpc::ResourceQuota memory("skinframe-server");
+  builder.SetResourceQuota(memory.Resize(kCallMemoryBytes));
 }
 
 absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> credentials(const ServerOptions& options) {

@@ -11,12 +11,7 @@ constexpr int kMostAtOnce = 100;
 absl::Status DeadlineWatch::run_once(Time now) {
   const auto passed = store_.passed_deadlines(now, kMostAtOnce);
   if (!passed.ok()) return passed.status();
-  for (const std::string& job_id : *passed) {
-    const auto after =
-        store_.modify(job_id, [&](const JobRecord& record) { return decide_deadline(record, now); });
-    if (!after.ok() && !absl::IsNotFound(after.status())) return after.status();
-  }
-  return absl::OkStatus();
+  return sweep_.run(store_, *passed, [&](const JobRecord& record) { return decide_deadline(record, now); });
 }
 
 }  // namespace skinframe::server

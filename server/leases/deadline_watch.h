@@ -3,6 +3,7 @@
 #pragma once
 
 #include "server/leases/duty.h"
+#include "server/leases/job_sweep.h"
 #include "server/store/job_store.h"
 
 namespace skinframe::server {
@@ -15,6 +16,7 @@ class DeadlineWatch final : public Duty {
 
  private:
   JobStore& store_;
+  JobSweep sweep_{name()};
 };
 
 }  // namespace skinframe::server

@@ -15,12 +15,8 @@ absl::Status LeaseReaper::run_once(Time now) {
   if (now < patient_until_) return absl::OkStatus();
   const auto expired = store_.expired_leases(now, kMostAtOnce);
   if (!expired.ok()) return expired.status();
-  for (const std::string& job_id : *expired) {
-    const auto after = store_.modify(
-        job_id, [&](const JobRecord& record) { return decide_lease_expired(record, now, policy_); });
-    if (!after.ok() && !absl::IsNotFound(after.status())) return after.status();
-  }
-  return absl::OkStatus();
+  return sweep_.run(store_, *expired,
+                    [&](const JobRecord& record) { return decide_lease_expired(record, now, policy_); });
 }
 
 }  // namespace skinframe::server

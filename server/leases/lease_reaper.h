@@ -4,6 +4,7 @@
 
 #include "server/jobs/attempt_policy.h"
 #include "server/leases/duty.h"
+#include "server/leases/job_sweep.h"
 #include "server/store/job_store.h"
 
 namespace skinframe::server {
@@ -21,6 +22,7 @@ class LeaseReaper final : public Duty {
   JobStore& store_;
   const AttemptPolicy policy_;
   const Time patient_until_;
+  JobSweep sweep_{name()};
 };
 
 }  // namespace skinframe::server

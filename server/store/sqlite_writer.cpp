@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/store/sqlite_writer.h"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -58,7 +60,11 @@ void SqliteWriter::commit_group(std::vector<Part*>& group) {
       if (part->status.ok()) part->status = status;
     }
   };
-  if (absl::Status status = database_->execute("BEGIN IMMEDIATE"); !status.ok()) return fail_all(status);
+  if (absl::Status status = database_->execute("BEGIN IMMEDIATE"); !status.ok()) {
+    spdlog::error("store: a transaction of {} writes could not begin: {}", group.size(),
+                  std::string(status.message()));
+    return fail_all(status);
+  }
   absl::Status broken;  // the transaction as a whole, not one part
   for (Part* part : group) {
     broken = database_->execute("SAVEPOINT part");
@@ -70,6 +76,8 @@ void SqliteWriter::commit_group(std::vector<Part*>& group) {
   }
   if (broken.ok()) broken = database_->execute("COMMIT");
   if (!broken.ok()) {
+    spdlog::error("store: a transaction of {} writes was given up: {}", group.size(),
+                  std::string(broken.message()));
     database_->execute("ROLLBACK").IgnoreError();  // a full disk may have rolled it back already
     if (broken.code() == absl::StatusCode::kResourceExhausted) return fail_all(broken);
     return fail_all(absl::UnavailableError("the transaction was given up: " + std::string(broken.message())));

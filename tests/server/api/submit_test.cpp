@@ -41,6 +41,17 @@ TEST_F(SubmitTest, TheSameRequestIdWithAnotherSpecAlreadyExists) {
   EXPECT_EQ(submit(other).error_code(), grpc::StatusCode::ALREADY_EXISTS);
 }
 
+TEST_F(SubmitTest, AMessageThatQuotesALongNameIsCutBetweenTwoCharacters) {
+  auto printer = request();
+  std::string name = "x";
+  while (name.size() < 10'000) name += "\u00e4";  // two bytes, at odd positions
+  printer.mutable_spec()->mutable_printers(0)->set_printer_id(name);
+  const std::string message = submit(printer).error_message();
+  const std::string begin = "unknown printer \"";
+  const std::size_t cut = begin.size() + 1 + (1021 - begin.size() - 1) / 2 * 2;
+  EXPECT_EQ(message, (begin + name).substr(0, cut) + "...");
+}
+
 TEST_F(SubmitTest, WrongSpecsAndRequestIdsAreInvalidArguments) {
   auto printer = request();
   printer.mutable_spec()->mutable_printers(0)->set_printer_id("x");

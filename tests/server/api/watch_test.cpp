@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // WatchJob: all events, in order, once, from any position, to any number of watchers.
 #include <future>
+#include <latch>
+#include <memory>
 #include <thread>
 
 #include "tests/server/api/api_fixture.h"
@@ -55,6 +57,56 @@ TEST_F(WatchTest, EndsAtOnceWhenTheFinalEventWasSeenAlready) {
   std::vector<v1::JobEvent> events;
   EXPECT_TRUE(watch(id, 2, &events).ok());
   EXPECT_TRUE(events.empty());
+}
+
+// One of very many watchers: no thread of its own.
+class CountingWatcher final : public grpc::ClientReadReactor<v1::JobEvent> {
+ public:
+  CountingWatcher(v1::JobService::Stub& stub, const std::string& job_id, std::latch& began, std::latch& ended)
+      : began_(began), ended_(ended) {
+    set_deadline(context_);
+    request_.set_job_id(job_id);
+    stub.async()->WatchJob(&context_, &request_, this);
+    StartRead(&event_);
+    StartCall();
+  }
+  void OnReadDone(bool ok) override {
+    if (!ok) return;
+    if (events_++ == 0) began_.count_down();
+    StartRead(&event_);
+  }
+  void OnDone(const grpc::Status& status) override {
+    if (events_ == 0) began_.count_down();  // the test does not hang
+    status_ = status;
+    ended_.count_down();
+  }
+  int events() const { return events_; }
+  const grpc::Status& status() const { return status_; }
+
+ private:
+  grpc::ClientContext context_;
+  v1::WatchJobRequest request_;
+  v1::JobEvent event_;
+  std::latch &began_, &ended_;
+  int events_ = 0;
+  grpc::Status status_;
+};
+
+TEST_F(WatchTest, TwoThousandWatchersFitOnOneChannel) {
+  constexpr int kWatchers = 2000;
+  const std::string id = submit();
+  std::latch began(kWatchers), ended(kWatchers);
+  std::vector<std::unique_ptr<CountingWatcher>> watchers;
+  for (int i = 0; i < kWatchers; ++i) {
+    watchers.push_back(std::make_unique<CountingWatcher>(*jobs_, id, began, ended));
+  }
+  began.wait();  // all of them at once
+  ASSERT_TRUE(cancel(id).ok());
+  ended.wait();
+  for (const auto& watcher : watchers) {
+    ASSERT_TRUE(watcher->status().ok()) << watcher->status().error_message();
+    ASSERT_EQ(watcher->events(), 2);
+  }
 }
 
 TEST_F(WatchTest, APositionBeyondTheLastEventIsOutOfRange) {

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "server/leases/deadline_watch.h"
+#include "server/store/sqlite_database.h"
 #include "server/store/sqlite_store.h"
 #include "tests/server/fixture/example_job.h"
 #include "tests/server/fixture/manual_clock.h"
@@ -106,6 +107,27 @@ TEST_F(Leases, AJobThatKillsItsWorkersFailsInsteadOfLooping) {
   EXPECT_EQ(job().state(), v1::JOB_STATE_FAILED);
   EXPECT_EQ(job().reason(), v1::REASON_CRASHED);
   EXPECT_EQ(job().attempt(), policy_.max_attempts);
+}
+
+TEST_F(Leases, AJobWhoseRowIsDamagedDoesNotHoldUpTheOthers) {
+  for (const char* id : {"damaged", "job"}) submit(example_record(id));
+  lease();
+  lease();
+  JobRecord late = example_record("late");
+  late.job.mutable_spec()->mutable_deadline()->set_seconds(1);
+  for (const char* id : {"damaged too", "late"}) {
+    late.job.set_job_id(id);
+    submit(late);
+  }
+  const auto database =
+      *SqliteDatabase::open(folder_.path() / "jobs.sqlite", SqliteDatabase::Mode::kReadWrite);
+  ASSERT_TRUE(database->execute("UPDATE jobs SET spec = x'ff' WHERE job_id LIKE 'damaged%'").ok());
+  clock_.advance(policy_.lease);
+  reap();
+  EXPECT_EQ(job().state(), v1::JOB_STATE_QUEUED);
+  DeadlineWatch deadlines(*store_);
+  ASSERT_TRUE(deadlines.run_once(clock_.now()).ok());
+  EXPECT_EQ(store_->get("late")->job.state(), v1::JOB_STATE_FAILED);
 }
 
 TEST_F(Leases, AfterARestartOfTheServerWorkersGetOneLeaseTimeToReport) {
