@@ -15,6 +15,7 @@
 namespace skinframe::server {
 namespace {
 
+constexpr std::size_t kLargestSpecBytes = 64 * 1024;
 constexpr int kMostPrinters = 16;
 constexpr int kMostLoads = 64;
 constexpr int kMostLabels = 16;
@@ -189,6 +190,10 @@ absl::Status check_schedule(const v1::JobSpec& spec) {
 }  // namespace
 
 absl::Status validate_spec(const v1::JobSpec& spec, const Catalog& catalog) {
+  // First: fields that this version does not know are stored with the rest, and have no bound of their own.
+  if (const std::size_t bytes = spec.ByteSizeLong(); bytes > kLargestSpecBytes) {
+    return invalid("spec has {} bytes, at most {} are allowed", bytes, kLargestSpecBytes);
+  }
   if (auto status = check_input(spec); !status.ok()) return status;
   if (auto status = check_printers(spec, catalog); !status.ok()) return status;
   if (auto status = check_loads(spec); !status.ok()) return status;

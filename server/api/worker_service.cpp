@@ -35,16 +35,20 @@ grpc::ServerUnaryReactor* WorkerService::Lease(grpc::CallbackServerContext*, con
 grpc::ServerUnaryReactor* WorkerService::Heartbeat(grpc::CallbackServerContext* context,
                                                    const v1::HeartbeatRequest* request,
                                                    v1::HeartbeatResponse* response) {
-  return answer_on(parts_.executor, context, [=, this] {
-    return log_refusal(heartbeat(*request, *response), request->job_id(), "heartbeat");
-  });
+  return answer_on(
+      parts_.executor, context,
+      [=, this] { return log_refusal(heartbeat(*request, *response), request->job_id(), "heartbeat"); },
+      request->job_id());
 }
 
 absl::Status WorkerService::heartbeat(const v1::HeartbeatRequest& request, v1::HeartbeatResponse& response) {
   if (auto status = validate_heartbeat(request); !status.ok()) return status;
   const Time now = parts_.clock.now();
-  const auto after = parts_.store.modify(request.job_id(), [&](const JobRecord& record) {
-    return decide_heartbeat(record, request, now, parts_.policy);
+  const auto after = parts_.store.modify(request.job_id(), [&](const JobRecord& record) -> Decision {
+    Decision decision = decide_heartbeat(record, request, now, parts_.policy);
+    if (!decision.ok()) return decision;  // a late worker hears of its token first
+    if (auto status = printers_are_the_jobs(record.job.spec(), request); !status.ok()) return status;
+    return decision;
   });
   if (!after.ok()) return gone_is_aborted(after.status());
   response.set_cancel(must_stop(*after, now));
@@ -54,8 +58,10 @@ absl::Status WorkerService::heartbeat(const v1::HeartbeatRequest& request, v1::H
 
 grpc::ServerUnaryReactor* WorkerService::Complete(grpc::CallbackServerContext* context,
                                                   const v1::CompleteRequest* request, v1::CompleteResponse*) {
-  return answer_on(parts_.executor, context,
-                   [=, this] { return log_refusal(complete(*request), request->job_id(), "completion"); });
+  return answer_on(
+      parts_.executor, context,
+      [=, this] { return log_refusal(complete(*request), request->job_id(), "completion"); },
+      request->job_id());
 }
 
 absl::Status WorkerService::complete(const v1::CompleteRequest& request) {
@@ -65,7 +71,9 @@ absl::Status WorkerService::complete(const v1::CompleteRequest& request) {
   const auto after = parts_.store.modify(request.job_id(), [&](const JobRecord& record) -> Decision {
     Decision decision = decide_complete(record, request, now, parts_.policy);
     const bool accepted = decision.ok() && decision->has_value();
-    if (accepted && !files.ok()) return files;  // a late worker hears of its token first
+    if (!accepted) return decision;  // a late worker hears of its token first
+    if (auto status = printers_are_the_jobs(record.job.spec(), request); !status.ok()) return status;
+    if (!files.ok()) return files;
     return decision;
   });
   return gone_is_aborted(after.status());

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <string_view>
@@ -11,6 +12,7 @@ namespace skinframe::server {
 namespace {
 
 constexpr std::size_t kLongestId = 128;
+constexpr std::size_t kLongestWord = 128;  // a stage, a material, a verdict
 constexpr std::size_t kLongestDetail = 4096;
 constexpr std::size_t kLongestPath = 255;
 constexpr int kMostProgress = 100;
@@ -20,6 +22,11 @@ constexpr int kMostFiles = 1000;
 template <class... Args>
 absl::Status invalid(fmt::format_string<Args...> format, Args&&... args) {
   return absl::InvalidArgumentError(fmt::format(format, std::forward<Args>(args)...));
+}
+
+absl::Status check_word(const char* field, const std::string& word) {
+  if (word.size() <= kLongestWord) return absl::OkStatus();
+  return invalid("{} has {} bytes, at most {} are allowed", field, word.size(), kLongestWord);
 }
 
 template <class Results>
@@ -33,8 +40,19 @@ absl::Status check_printers(const Results& printers) {
       return invalid("printers.detail has {} bytes, at most {} are allowed", printer.detail().size(),
                      kLongestDetail);
     }
+    if (auto s = check_word("printers.material_id", printer.material_id()); !s.ok()) return s;
+    if (auto s = check_word("printers.statistics.balance", printer.statistics().balance()); !s.ok()) return s;
   }
   return absl::OkStatus();
+}
+
+absl::Status check_printer_is_asked_for(const v1::JobSpec& spec, const std::string& printer_id) {
+  const auto& asked = spec.printers();
+  const bool found = std::any_of(asked.begin(), asked.end(), [&](const v1::PrinterRequest& printer) {
+    return printer.printer_id() == printer_id;
+  });
+  if (found) return absl::OkStatus();
+  return invalid("printer_id \"{}\" is not one that the job asks for", printer_id);
 }
 
 // Relative, each part a plain name: it becomes a file below the client's folder.
@@ -67,6 +85,10 @@ absl::Status validate_heartbeat(const v1::HeartbeatRequest& request) {
   if (request.progress_size() > kMostProgress) {
     return invalid("progress has {} entries, at most {} are allowed", request.progress_size(), kMostProgress);
   }
+  for (const v1::JobProgress& progress : request.progress()) {
+    if (auto status = check_word("progress.printer_id", progress.printer_id()); !status.ok()) return status;
+    if (auto status = check_word("progress.stage", progress.stage()); !status.ok()) return status;
+  }
   return check_printers(request.printers());
 }
 
@@ -98,6 +120,24 @@ absl::Status validate_complete(const v1::CompleteRequest& request) {
     if (!paths.insert(file.path()).second) return invalid("files.path \"{}\" is there twice", file.path());
   }
   return check_printers(request.printers());
+}
+
+absl::Status printers_are_the_jobs(const v1::JobSpec& spec, const v1::HeartbeatRequest& request) {
+  for (const v1::JobProgress& progress : request.progress()) {
+    if (progress.printer_id().empty()) continue;  // a stage that all printers share
+    if (auto status = check_printer_is_asked_for(spec, progress.printer_id()); !status.ok()) return status;
+  }
+  for (const v1::PrinterResult& printer : request.printers()) {
+    if (auto status = check_printer_is_asked_for(spec, printer.printer_id()); !status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status printers_are_the_jobs(const v1::JobSpec& spec, const v1::CompleteRequest& request) {
+  for (const v1::PrinterResult& printer : request.printers()) {
+    if (auto status = check_printer_is_asked_for(spec, printer.printer_id()); !status.ok()) return status;
+  }
+  return absl::OkStatus();
 }
 
 absl::Status files_are_there(const v1::CompleteRequest& request, const ArtifactStore& artifacts) {

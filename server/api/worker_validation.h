@@ -12,6 +12,10 @@ absl::Status validate_lease(const v1::LeaseRequest& request);
 absl::Status validate_heartbeat(const v1::HeartbeatRequest& request);
 absl::Status validate_complete(const v1::CompleteRequest& request);
 
+// INVALID_ARGUMENT: a printer that the job does not ask for. Progress without a printer is all printers'.
+absl::Status printers_are_the_jobs(const v1::JobSpec& spec, const v1::HeartbeatRequest& request);
+absl::Status printers_are_the_jobs(const v1::JobSpec& spec, const v1::CompleteRequest& request);
+
 // FAILED_PRECONDITION: a file is not uploaded, or has another size.
 absl::Status files_are_there(const v1::CompleteRequest& request, const ArtifactStore& artifacts);
 

@@ -2,6 +2,7 @@
 // Every bound of job.proto: the last good value passes, the next is refused by the name of its field.
 #include "server/api/spec_validation.h"
 
+#include <google/protobuf/unknown_field_set.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -48,6 +49,16 @@ void expect_refused(const std::function<void(v1::JobSpec&)>& change, const std::
 
 TEST(SpecValidation, TheSimplestSpecIsGood) {
   expect_good([](auto&) {});
+}
+
+TEST(SpecValidation, TheWholeIsBoundedWithFieldsOfVersionsToCome) {
+  const auto grow = [](v1::JobSpec& spec, std::size_t bytes) {
+    auto& unknown = *spec.GetReflection()->MutableUnknownFields(&spec);
+    unknown.AddLengthDelimited(1000, std::string(bytes - 5 - spec.ByteSizeLong(), 'x'));  // tag 2, length 3
+    ASSERT_EQ(spec.ByteSizeLong(), bytes);
+  };
+  expect_good([&](auto& s) { grow(s, 65536); });
+  expect_refused([&](auto& s) { grow(s, 65537); }, "spec has 65537 bytes, at most 65536 are allowed");
 }
 
 TEST(SpecValidation, AnUnknownPrinterIsAnsweredWithTheKnownOnes) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // WorkerService: each status that worker.proto documents, and a job's whole life through the API.
+#include <functional>
 #include <future>
 
 #include "tests/server/api/api_fixture.h"
@@ -177,6 +178,45 @@ TEST_F(WorkerServiceTest, TooMuchProgressAtOnceIsAnInvalidArgument) {
   const v1::Assignment assignment = lease();
   EXPECT_TRUE(beat(assignment, nullptr, 100).ok());
   EXPECT_EQ(beat(assignment, nullptr, 101).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+}
+
+TEST_F(WorkerServiceTest, WordsOfAWorkerAreBounded) {
+  submit();
+  const v1::Assignment assignment = lease();
+  const auto code = [&](const std::function<void(v1::HeartbeatRequest&)>& change) {
+    v1::HeartbeatRequest request;
+    request.set_job_id(assignment.job_id());
+    request.set_fencing_token(assignment.fencing_token());
+    change(request);
+    v1::HeartbeatResponse response;
+    grpc::ClientContext context;
+    set_deadline(context);
+    return workers_->Heartbeat(&context, request, &response).error_code();
+  };
+  const auto result = [](v1::HeartbeatRequest& request) -> v1::PrinterResult& {
+    auto& printer = *request.add_printers();
+    printer.set_printer_id("sinterstation-hiq");
+    return printer;
+  };
+  const std::string longest(128, 'x'), longer(129, 'x');
+  EXPECT_EQ(code([&](auto& r) { r.add_progress()->set_stage(longest); }), grpc::StatusCode::OK);
+  EXPECT_EQ(code([&](auto& r) { r.add_progress()->set_stage(longer); }), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(code([&](auto& r) { result(r).set_material_id(longest); }), grpc::StatusCode::OK);
+  EXPECT_EQ(code([&](auto& r) { result(r).set_material_id(longer); }), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(code([&](auto& r) { result(r).mutable_statistics()->set_balance(longest); }),
+            grpc::StatusCode::OK);
+  EXPECT_EQ(code([&](auto& r) { result(r).mutable_statistics()->set_balance(longer); }),
+            grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(code([&](auto& r) { r.add_progress()->set_printer_id("sinterstation-hiq"); }),
+            grpc::StatusCode::OK);
+  EXPECT_EQ(code([&](auto& r) { r.add_progress()->set_printer_id("teapot"); }),
+            grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(code([&](auto& r) { r.add_printers()->set_printer_id("teapot"); }),
+            grpc::StatusCode::INVALID_ARGUMENT);
+  auto done = outcome(assignment, v1::JOB_STATE_SUCCEEDED);
+  done.add_printers()->set_printer_id("teapot");
+  EXPECT_EQ(complete(done).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  EXPECT_EQ(job(assignment.job_id()).state(), v1::JOB_STATE_RUNNING);
 }
 
 TEST_F(WorkerServiceTest, ARetryableFailureIsTriedAgainAfterTheBackoff) {
