@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <exception>
+#include <new>
 
 #include "worker/optimize/block_ldlt.h"
 #include "worker/optimize/design.h"
@@ -99,7 +100,7 @@ class Algorithm {
       result_.detail = sized.detail;
       result_.violated_constraint = sized.violated_constraint;
       result_.lower_bound_mm3 = sized.lower_bound_mm3;
-      if (sized.reason == Termination::kInfeasible)
+      if (sized.violated_constraint == "displacement")
         result_.best_reachable_displacement_mm = sized.evaluation.max_displacement_mm;
       result_.kkt_residual = sized.kkt_error;
       design_.areas_mm2 = std::move(sized.areas_mm2);
@@ -162,7 +163,9 @@ Result<OptimizeResult> optimize_frame(const FrameProblem& problem, const Optimiz
   use_one_blas_thread();
   try {
     return Algorithm(problem, options, context).run();
-  } catch (const std::exception& e) {  // bad_alloc and what Eigen or the caller's functions throw
+  } catch (const std::bad_alloc&) {  // no fault of the optimiser: whoever owns the process decides
+    throw;
+  } catch (const std::exception& e) {  // what Eigen or the caller's functions throw
     return internal_error(fmt::format("the optimiser gave up: {}", e.what()));
   }
 }

@@ -80,9 +80,9 @@ struct OptimizeOptions {
 inline constexpr double kVolumeTie = 1e-7;
 
 enum class Termination {
-  kOptimal,     // every stage ended at its optimum (a local one for topology and geometry)
-  kInfeasible,  // no frame keeps the constraints: violated_constraint says which, detail whether that is
-                // proven or the best reachable is merely a local optimum; radii are at the best reachable
+  kOptimal,         // every stage ended at its optimum (a local one for topology and geometry)
+  kInfeasible,      // no frame keeps the constraints: violated_constraint says which, detail whether that is
+                    // proven or the best reachable is merely a local optimum; radii are at the best reachable
   kIterationLimit,  // feasible, but the last sizing stopped before its tolerance
 };
 
@@ -110,7 +110,7 @@ struct OptimizeResult {
   // No frame of the input's nodes and struts within the area bounds of SizeOpt has less volume. Absent: no
   // bound is known.
   std::optional<double> lower_bound_mm3;
-  std::optional<double> best_reachable_displacement_mm;  // when infeasible
+  std::optional<double> best_reachable_displacement_mm;  // when that is violated_constraint
   std::string
       violated_constraint;  // when infeasible: displacement, axial stress, shear stress, balance, equilibrium
   std::map<std::string, double> seconds;  // "size", "topology", "geometry"
@@ -118,7 +118,8 @@ struct OptimizeResult {
   std::vector<int> strut_origin;          // the same for struts
 };
 
-// Errors: invalid input (problem or options), cancelled, internal (a library gave up).
+// Errors: invalid input (problem or options), cancelled, internal (a library gave up). std::bad_alloc passes
+// through.
 Result<OptimizeResult> optimize_frame(const FrameProblem& problem, const OptimizeOptions& options,
                                       RunContext& context);
 

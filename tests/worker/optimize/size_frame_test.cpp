@@ -158,6 +158,8 @@ TEST(SizeOpt, BalanceOutOfReachIsNamed) {
   const OptimizeResult r = size_only(problem);
   EXPECT_EQ(r.reason, Termination::kInfeasible);
   EXPECT_EQ(r.violated_constraint, "balance");
+  EXPECT_FALSE(r.best_reachable_displacement_mm.has_value())
+      << "it is not the displacement that is out of reach";
   EXPECT_LT(r.evaluation.balance_margin_mm, 0);
 }
 
