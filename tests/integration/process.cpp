@@ -86,6 +86,7 @@ bool eventually(const std::function<bool()>& condition, Seconds at_most) {
   const auto end = std::chrono::steady_clock::now() + at_most;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;
+    // Other processes have no clock to inject: the one place where a test waits, and never longer than it has to.
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   return true;
