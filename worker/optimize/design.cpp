@@ -71,11 +71,10 @@ void drop_dangling(const Frame& frame, const std::vector<bool>& anchored, std::v
 }  // namespace
 
 Design initial_design(const FrameProblem& problem) {
-  Design design{problem,
-                {},
-                0,
-                std::vector<int>(problem.frame.nodes_mm.size()),
-                std::vector<int>(problem.frame.struts.size())};
+  Design design;
+  design.problem = problem;
+  design.node_origin.resize(problem.frame.nodes_mm.size());
+  design.strut_origin.resize(problem.frame.struts.size());
   std::iota(design.node_origin.begin(), design.node_origin.end(), 0);
   std::iota(design.strut_origin.begin(), design.strut_origin.end(), 0);
   return design;

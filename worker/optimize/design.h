@@ -3,9 +3,11 @@
 // and the way back to the input's indices. And how struts are taken out of it.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "worker/mechanics/frame_problem.h"
+#include "worker/optimize/optimize_frame.h"
 
 namespace skinframe {
 
@@ -13,6 +15,10 @@ struct Design {
   FrameProblem problem;
   std::vector<double> areas_mm2;  // sized and feasible, one a strut
   double volume_mm3 = 0;
+  // How the sizing that gave these areas ended.
+  Termination reason = Termination::kOptimal;
+  std::string detail;
+  double kkt_error = 0;
   std::vector<int> node_origin, strut_origin;  // in the input
 };
 

@@ -98,13 +98,12 @@ std::optional<Design> settle(const Design& design, const ProgramOutcome& outcome
     Design moved = design;
     for (std::size_t i = 0; i < moved.problem.frame.nodes_mm.size(); ++i)
       moved.problem.frame.nodes_mm[i] += share * (outcome.positions_mm[i] - design.problem.frame.nodes_mm[i]);
-    const SizedFrame sized = size_frame(moved.problem, outcome.areas_mm2, session);
+    SizedFrame sized = size_frame(moved.problem, outcome.areas_mm2, session);
     if (sized.cancelled) return std::nullopt;
     if (!sized.feasible() || !(sized.volume_mm3() < design.volume_mm3)) continue;
     const auto& accepts = session.options().accepts;
     if (accepts && !accepts(moved.problem.frame, radii_of(sized.areas_mm2))) continue;
-    moved.areas_mm2 = sized.areas_mm2;
-    moved.volume_mm3 = sized.volume_mm3();
+    take_sizing(moved, std::move(sized));
     return moved;
   }
   return std::nullopt;

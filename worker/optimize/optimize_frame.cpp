@@ -78,7 +78,7 @@ class Algorithm {
   Result<OptimizeResult> run() {
     size();
     if (session_.cancelled()) return cancelled_error();
-    if (result_.reason != Termination::kInfeasible) reduce();
+    if (design_.reason != Termination::kInfeasible) reduce();
     if (session_.cancelled()) return cancelled_error();
     return finish();
   }
@@ -96,15 +96,12 @@ class Algorithm {
     timed("size", Stage::kSize, [&] {
       SizedFrame sized = size_frame(design_.problem, {}, session_);
       if (sized.cancelled) return;
-      result_.reason = sized.reason;
-      result_.detail = sized.detail;
       result_.violated_constraint = sized.violated_constraint;
       result_.lower_bound_mm3 = sized.lower_bound_mm3;
       if (sized.violated_constraint == "displacement")
         result_.best_reachable_displacement_mm = sized.evaluation.max_displacement_mm;
-      result_.kkt_residual = sized.kkt_error;
-      design_.areas_mm2 = std::move(sized.areas_mm2);
-      design_.volume_mm3 = sized.evaluation.frame_volume_mm3;
+      if (sized.lower_bound_mm3) sized.detail += ": the global optimum for the nodes and struts given";
+      take_sizing(design_, std::move(sized));
     });
     result_.size = result_.topology = result_.geometry = record_of(design_.problem, design_.volume_mm3);
   }
@@ -140,11 +137,23 @@ class Algorithm {
     result_.evaluation = evaluate(design_.problem, result_.radii_mm, responses);
     for (const CaseResponse& response : responses)
       result_.displacements_mm.push_back(response.displacements_mm);
+    conclude();
     result_.interior_point_iterations = session_.interior_point_iterations();
     result_.node_origin = std::move(design_.node_origin);
     result_.strut_origin = std::move(design_.strut_origin);
     result_.problem = std::move(design_.problem);
     return std::move(result_);
+  }
+
+  // What is said is about the frame that is handed over: its own sizing, and its evaluation from scratch.
+  void conclude() {
+    result_.reason = design_.reason;
+    result_.detail = design_.detail;
+    result_.kkt_residual = design_.kkt_error;
+    if (result_.reason == Termination::kInfeasible || is_feasible(result_.evaluation, options_)) return;
+    result_.reason = Termination::kInfeasible;
+    result_.violated_constraint = violated_constraint(result_.evaluation, options_.feasibility_tolerance);
+    result_.detail = fmt::format("{} is not kept by the frame reached", result_.violated_constraint);
   }
 
   const OptimizeOptions& options_;

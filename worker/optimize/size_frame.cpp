@@ -77,8 +77,8 @@ class Sizing {
   }
 
   SizedFrame presolve() {
-    SizedFrame least = at(Termination::kOptimal, bounds_.lower_mm2,
-                          "every strut at its lower bound is feasible: the global optimum of this frame");
+    SizedFrame least =
+        at(Termination::kOptimal, bounds_.lower_mm2, "every strut at its lower bound keeps every limit");
     least.lower_bound_mm3 = least.volume_mm3();
     if (!holds(least.evaluation)) least.reason = Termination::kInfeasible;
     return least;
@@ -222,6 +222,14 @@ class Sizing {
 
 bool is_feasible(const Evaluation& evaluation, const OptimizeOptions& options) {
   return violated_constraint(evaluation, options.feasibility_tolerance).empty();
+}
+
+void take_sizing(Design& design, SizedFrame sized) {
+  design.volume_mm3 = sized.volume_mm3();
+  design.areas_mm2 = std::move(sized.areas_mm2);
+  design.reason = sized.reason;
+  design.detail = std::move(sized.detail);
+  design.kkt_error = sized.kkt_error;
 }
 
 SizedFrame size_frame(const FrameProblem& problem, const std::vector<double>& hint_mm2, Session& session) {

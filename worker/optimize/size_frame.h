@@ -12,6 +12,7 @@
 
 #include "worker/mechanics/evaluation.h"
 #include "worker/mechanics/frame_problem.h"
+#include "worker/optimize/design.h"
 #include "worker/optimize/session.h"
 
 namespace skinframe {
@@ -32,6 +33,9 @@ struct SizedFrame {
 
 // `hint_mm2`: areas near the optimum, one a strut, or empty. Cancellation is in the result.
 SizedFrame size_frame(const FrameProblem& problem, const std::vector<double>& hint_mm2, Session& session);
+
+// The design takes the areas of its sizing, and how that ended.
+void take_sizing(Design& design, SizedFrame sized);
 
 // Every constraint holds within the feasibility tolerance.
 bool is_feasible(const Evaluation& evaluation, const OptimizeOptions& options);

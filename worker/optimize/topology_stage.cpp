@@ -84,11 +84,10 @@ std::optional<Design> threshold_and_size(const Design& design, const std::vector
     const std::size_t struts = shrunk.problem.frame.struts.size();
     if (struts == 0 || struts == tried) continue;
     tried = struts;
-    const SizedFrame sized = size_frame(shrunk.problem, shrunk.areas_mm2, session);
+    SizedFrame sized = size_frame(shrunk.problem, shrunk.areas_mm2, session);
     if (sized.cancelled) return std::nullopt;
     if (!sized.feasible() || sized.volume_mm3() > (1 + kVolumeTie) * design.volume_mm3) continue;
-    shrunk.areas_mm2 = sized.areas_mm2;
-    shrunk.volume_mm3 = sized.volume_mm3();
+    take_sizing(shrunk, std::move(sized));
     return shrunk;
   }
   return std::nullopt;
@@ -107,6 +106,9 @@ std::optional<Design> bare_design(const Design& design, const OptimizeOptions& o
     return std::nullopt;
   bare.areas_mm2 = std::move(bounds.lower_mm2);
   bare.volume_mm3 = evaluation.frame_volume_mm3;
+  bare.reason = Termination::kOptimal;
+  bare.detail = "no removable strut is needed, and every other one stands at its lower bound";
+  bare.kkt_error = 0;
   return bare;
 }
 

@@ -101,6 +101,7 @@ TEST(SizeOpt, FeasibleLowerBoundsAreTheOptimumAndItsBound) {
   ASSERT_TRUE(r.lower_bound_mm3.has_value());
   EXPECT_NEAR(*r.lower_bound_mm3, r.size.volume_mm3, 1e-9);
   EXPECT_EQ(r.interior_point_iterations, 0);
+  EXPECT_NE(r.detail.find("global optimum for the nodes and struts given"), std::string::npos) << r.detail;
 }
 
 // Even at the upper bounds u = F L / (gamma pi 25) > epsilon: that is the best that can be reached.
