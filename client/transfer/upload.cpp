@@ -56,6 +56,7 @@ Result<FileDigest> upload_mesh(const Connection& connection, const std::filesyst
   const auto stub = v1::ArtifactService::NewStub(connection.channel);
   Backoff backoff(std::chrono::milliseconds(100), std::chrono::milliseconds(2000));
   std::int64_t kept = -1;
+  bool kept_part_was_wrong = false;
   for (int left = kAttemptsWithoutProgress; left > 0; --left) {
     v1::StatArtifactRequest request;
     request.set_sha256(digest->sha256);
@@ -70,6 +71,11 @@ Result<FileDigest> upload_mesh(const Connection& connection, const std::filesyst
       return send(*stub, context, path, *digest, kept);
     });
     if (status.ok()) return digest;
+    if (status.error_code() == grpc::StatusCode::DATA_LOSS && kept > 0 && !kept_part_was_wrong) {
+      kept_part_was_wrong = true;  // and the server has dropped it: once more, from the beginning
+      kept = -1;
+      continue;
+    }
     if (status.error_code() == grpc::StatusCode::INVALID_ARGUMENT ||
         status.error_code() == grpc::StatusCode::DATA_LOSS) {
       return Failure{FailureKind::kInput, fmt::format("{}: {}", path.string(), status.error_message())};

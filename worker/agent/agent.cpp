@@ -14,6 +14,7 @@
 #include <fstream>
 #include <random>
 #include <sstream>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -136,9 +137,17 @@ Status AgentOptions::validate() const {
 Status run_agent_until(const AgentOptions& options, const std::shared_ptr<grpc::Channel>& channel,
                        std::stop_token stop) {
   const std::string instance_id = random_hex();
-  const std::filesystem::path root = options.work_root.empty()
-                                         ? std::filesystem::temp_directory_path() / "skinframe-worker"
-                                         : options.work_root;
+  std::filesystem::path root = options.work_root;
+  if (root.empty()) {
+    std::error_code error;
+    root = std::filesystem::temp_directory_path(error) / "skinframe-worker";
+    if (error) {
+      return io_error(
+          fmt::format("no temporary folder: {}; set TMPDIR to a folder that can be written, or give "
+                      "--work-dir",
+                      error.message()));
+    }
+  }
   const auto folder = agent::AgentFolder::create(std::filesystem::absolute(root), instance_id);
   if (!folder) return folder.error();
   const std::string name = options.worker_name.empty() ? default_name() : options.worker_name;

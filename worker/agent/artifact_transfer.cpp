@@ -11,6 +11,7 @@
 #include <fstream>
 #include <memory>
 #include <random>
+#include <utility>
 
 #include "worker/agent/backoff.h"
 
@@ -131,6 +132,8 @@ grpc::Status download_artifact(v1::ArtifactService::StubInterface& stub, const s
 
 grpc::Status upload_artifact(v1::ArtifactService::StubInterface& stub, const std::filesystem::path& path,
                              const FileDigest& digest, std::stop_token stop) {
+  std::int64_t kept = 0;
+  bool kept_part_was_wrong = false;
   const auto attempt = [&](grpc::ClientContext& context) -> grpc::Status {
     grpc::ClientContext stat_context;
     stat_context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(10));
@@ -139,16 +142,17 @@ grpc::Status upload_artifact(v1::ArtifactService::StubInterface& stub, const std
     v1::StatArtifactResponse stat;
     if (const auto status = stub.Stat(&stat_context, stat_request, &stat); !status.ok()) return status;
     if (stat.complete()) return grpc::Status::OK;
+    kept = stat.resume_offset();
 
     std::ifstream in(path, std::ios::binary);
-    in.seekg(stat.resume_offset());
+    in.seekg(kept);
     if (!in) return disk_error(path, "cannot be read");
     v1::UploadArtifactResponse response;
     const auto writer = stub.Upload(&context, &response);
     v1::UploadArtifactRequest part;
     part.mutable_header()->set_sha256(digest.sha256);
     part.mutable_header()->set_size_bytes(digest.size_bytes);
-    part.mutable_header()->set_offset(stat.resume_offset());
+    part.mutable_header()->set_offset(kept);
     std::string buffer(kChunkBytes, '\0');
     for (bool open = writer->Write(part); open && in;) {
       in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
@@ -159,7 +163,12 @@ grpc::Status upload_artifact(v1::ArtifactService::StubInterface& stub, const std
     writer->WritesDone();
     return writer->Finish();
   };
-  return until_answered(stop, attempt, [](const grpc::Status& status) {
+  return until_answered(stop, attempt, [&](const grpc::Status& status) {
+    // DATA_LOSS: the part that the server had kept was not of this file. It has dropped it: once more, from
+    // the beginning.
+    if (status.error_code() == grpc::StatusCode::DATA_LOSS && kept > 0) {
+      return !std::exchange(kept_part_was_wrong, true);
+    }
     // ABORTED: another upload of the same content is under way. FAILED_PRECONDITION: it moved on; Stat again.
     return status.error_code() == grpc::StatusCode::ABORTED ||
            status.error_code() == grpc::StatusCode::FAILED_PRECONDITION;

@@ -32,6 +32,7 @@ Result<Pipe> make_pipe() {
 // What the child does between fork and exec. The address space is a copy in which other threads' locks may be
 // held for ever, so only async-signal-safe calls, no allocation. Never returns.
 struct ChildSide {
+  const char* program;
   char* const* arguments;
   pid_t parent;
   int null_in, out, err, failure;
@@ -58,7 +59,7 @@ struct ChildSide {
     if (::dup2(null_in, 0) < 0 || ::dup2(out, 1) < 0 || ::dup2(err, 2) < 0) fail();
     ::close_range(3, UINT_MAX, CLOSE_RANGE_CLOEXEC);  // whatever a library opened without close-on-exec
     if (limited && ::setrlimit(RLIMIT_AS, &address_space) != 0) fail();
-    ::execv(arguments[0], arguments);
+    ::execv(program, arguments);
     fail();
   }
 };
@@ -99,7 +100,8 @@ Result<ChildProcess> ChildProcess::start(const ChildCommand& command) {
   for (const std::string& word : command.arguments) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   const rlim_t limit = command.address_space_bytes.value_or(0);
-  const ChildSide child_side{arguments.data(),
+  const ChildSide child_side{command.program.c_str(),
+                             arguments.data(),
                              ::getpid(),
                              null_in.get(),
                              out->write.get(),
@@ -121,7 +123,7 @@ Result<ChildProcess> ChildProcess::start(const ChildCommand& command) {
     got = ::read(failure->read.get(), &reason, sizeof reason);  // ends with 0 bytes when exec closed the pipe
   } while (got < 0 && errno == EINTR);
   if (got == sizeof reason) {
-    return io_error(fmt::format("cannot run {}: {}", command.arguments[0], std::strerror(reason)));
+    return io_error(fmt::format("cannot run {}: {}", command.program, std::strerror(reason)));
   }
   child.exit_ = Descriptor(static_cast<int>(::syscall(SYS_pidfd_open, pid, 0)));
   if (child.exit_.get() < 0) return io_error(fmt::format("no pidfd: {}", std::strerror(errno)));

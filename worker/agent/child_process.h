@@ -35,7 +35,8 @@ class Descriptor {
 };
 
 struct ChildCommand {
-  std::vector<std::string> arguments;  // [0] is the program's path
+  std::string program;                 // its path
+  std::vector<std::string> arguments;  // [0] is the name that it goes by
   std::optional<std::uint64_t> address_space_bytes;
 };
 

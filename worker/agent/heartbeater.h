@@ -37,6 +37,8 @@ class Heartbeater {
 
   // Sends what is pending and ends the thread. The lease then lasts until lease_expiry().
   void finish();
+  // After finish(): one heartbeat more, for a completion that the server does not take yet.
+  void prolong_lease() { beat(); }
   std::chrono::steady_clock::time_point lease_expiry() const;
 
  private:

@@ -27,6 +27,7 @@ using std::chrono::steady_clock;
 
 constexpr std::uintmax_t kMaxOutcomeBytes = 1024 * 1024;
 constexpr std::size_t kLastLogLines = 5;
+constexpr std::chrono::minutes kCompletionPatience{10};  // enough to make room on a full disk
 constexpr std::size_t kLastLogLineBytes = 300;
 
 // The attempt cannot go on; how the job ends by that.
@@ -47,6 +48,7 @@ class Attempt {
         agent_folder_(agent_folder),
         stubs_(stubs),
         assignment_(assignment),
+        worker_stop_(worker_stop),
         heartbeater_(stubs.worker, assignment, std::move(worker_stop)) {}
 
   void run() {
@@ -72,7 +74,7 @@ class Attempt {
 
   // Fills in the completion's files.
   Conclusion work(v1::CompleteRequest& completion) {
-    const auto folder = JobFolder::create(agent_folder_, assignment_.fencing_token());
+    const auto folder = JobFolder::create(agent_folder_, id(), assignment_.fencing_token());
     if (!folder) return give_up(v1::REASON_CRASHED, folder.error().message, true);
     if (auto wrong = prepare(folder->path())) return *std::move(wrong);
     AttemptEnd end = run_process(folder->path());
@@ -115,7 +117,8 @@ class Attempt {
     AttemptEnd end;
     end.memory_limit_mb = options_.memory_limit_mb;
     ChildCommand command;
-    command.arguments = {options_.self_executable.string(), "run-job", folder.string()};
+    command.program = options_.self_executable.string();
+    command.arguments = {"skinframe-worker", "run-job", folder.string()};  // what `ps` shows
     if (options_.memory_limit_mb > 0) {
       command.address_space_bytes = static_cast<std::uint64_t>(options_.memory_limit_mb) << 20;
     }
@@ -208,9 +211,11 @@ class Attempt {
     return std::nullopt;
   }
 
+  // Until the server takes it or refuses it. Meanwhile heartbeats keep the lease, though not for ever and not
+  // past the agent's own end: then the lease's expiry is the bound.
   void complete(const v1::CompleteRequest& completion) {
     Backoff backoff(std::chrono::milliseconds(100), std::chrono::milliseconds(1000), std::random_device{}());
-    const auto expiry = heartbeater_.lease_expiry();
+    const auto patience = steady_clock::now() + kCompletionPatience;
     while (true) {
       grpc::ClientContext context;
       context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(5));
@@ -223,9 +228,13 @@ class Attempt {
         return;
       }
       const bool again = status.error_code() == grpc::StatusCode::UNAVAILABLE ||
-                         status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED;
+                         status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED ||
+                         status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;  // its disk is full
+      if (again && !worker_stop_.stop_requested() && steady_clock::now() < patience) {
+        heartbeater_.prolong_lease();
+      }
       const auto delay = backoff.next();
-      if (!again || steady_clock::now() + delay >= expiry) {
+      if (!again || steady_clock::now() + delay >= heartbeater_.lease_expiry()) {
         spdlog::warn("job={} the completion was not accepted: {}", id(), status.error_message());
         return;
       }
@@ -237,6 +246,7 @@ class Attempt {
   const fs::path& agent_folder_;
   ServerStubs stubs_;
   const v1::Assignment& assignment_;
+  const std::stop_token worker_stop_;
   Heartbeater heartbeater_;
 };
 

@@ -69,19 +69,20 @@ AgentFolder::~AgentFolder() {
   if (error) spdlog::warn("{}: cannot be removed: {}", path_.string(), error.message());
 }
 
-Result<JobFolder> JobFolder::create(const fs::path& agent_folder, std::int64_t fencing_token) {
+Result<JobFolder> JobFolder::create(const fs::path& agent_folder, const std::string& job_id,
+                                    std::int64_t fencing_token) {
   fs::path path = agent_folder / fmt::format("job-{}", fencing_token);
   std::error_code error;
   fs::create_directory(path, error);
   if (error) return io_error(fmt::format("{}: cannot be made: {}", path.string(), error.message()));
-  return JobFolder(std::move(path));
+  return JobFolder(std::move(path), job_id);
 }
 
 JobFolder::~JobFolder() {
   if (path_.empty()) return;
   std::error_code error;
   fs::remove_all(path_, error);
-  if (error) spdlog::warn("{}: cannot be removed: {}", path_.string(), error.message());
+  if (error) spdlog::warn("job={} {}: cannot be removed: {}", job_id_, path_.string(), error.message());
 }
 
 Result<std::vector<fs::path>> list_result_files(const fs::path& out) {

@@ -31,15 +31,20 @@ class AgentFolder {
 // WORKDIR of one attempt; gone with its object.
 class JobFolder {
  public:
-  static Result<JobFolder> create(const std::filesystem::path& agent_folder, std::int64_t fencing_token);
-  JobFolder(JobFolder&& other) noexcept : path_(std::move(other.path_)) { other.path_.clear(); }
+  static Result<JobFolder> create(const std::filesystem::path& agent_folder, const std::string& job_id,
+                                  std::int64_t fencing_token);
+  JobFolder(JobFolder&& other) noexcept : path_(std::move(other.path_)), job_id_(std::move(other.job_id_)) {
+    other.path_.clear();
+  }
   JobFolder& operator=(JobFolder&&) = delete;
   ~JobFolder();
   const std::filesystem::path& path() const { return path_; }
 
  private:
-  explicit JobFolder(std::filesystem::path path) : path_(std::move(path)) {}
+  JobFolder(std::filesystem::path path, std::string job_id)
+      : path_(std::move(path)), job_id_(std::move(job_id)) {}
   std::filesystem::path path_;
+  std::string job_id_;  // for the log
 };
 
 // The regular files below out, relative, sorted; none when out is not there. Links are not followed:

@@ -6,6 +6,7 @@
 #include <grpcpp/grpcpp.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <string>
@@ -24,6 +25,8 @@ class FakeArtifacts final : public v1::ArtifactService::Service {
   std::vector<std::int64_t> download_offsets;   // of each download
   std::size_t break_upload_after = 0;           // bytes; once; 0: never
   std::size_t break_download_after = 0;         // bytes; once; 0: never
+  // SHA-256, where a test has one at hand: an upload of another content is then DATA_LOSS.
+  std::function<std::string(const std::string&)> hash;
 
   grpc::Status Stat(grpc::ServerContext*, const v1::StatArtifactRequest* request,
                     v1::StatArtifactResponse* response) override {
@@ -57,7 +60,12 @@ class FakeArtifacts final : public v1::ArtifactService::Service {
       }
     }
     if (static_cast<std::int64_t>(kept.size()) != header.size_bytes()) {
+      partial.erase(header.sha256());
       return {grpc::StatusCode::DATA_LOSS, "another size"};
+    }
+    if (hash && hash(kept) != header.sha256()) {
+      partial.erase(header.sha256());
+      return {grpc::StatusCode::DATA_LOSS, "another content"};
     }
     complete[header.sha256()] = std::move(kept);
     partial.erase(header.sha256());

@@ -45,6 +45,24 @@ TEST_F(Transfer, AnInterruptedUploadGoesOnWhereItStopped) {
   EXPECT_EQ(artifacts_.complete[sha256(mesh)], mesh);
 }
 
+TEST_F(Transfer, AKeptPartOfAnotherContentIsSentOnceMoreFromTheBeginning) {
+  const std::string mesh(1'000, 'm');
+  artifacts_.hash = sha256;
+  artifacts_.partial[sha256(mesh)] = std::string(300, 'x');
+  const auto digest = upload_mesh(connection_, folder_.write("mesh.stl", mesh));
+  ASSERT_TRUE(digest.ok()) << digest.failure().message;
+  EXPECT_EQ(artifacts_.upload_offsets, (std::vector<std::int64_t>{300, 0}));
+  EXPECT_EQ(artifacts_.complete[sha256(mesh)], mesh);
+}
+
+TEST_F(Transfer, AContentThatIsLostFromTheBeginningIsNotSentAgain) {
+  artifacts_.hash = [](const std::string&) { return std::string("another"); };
+  const auto digest = upload_mesh(connection_, folder_.write("mesh.stl", "mesh"));
+  ASSERT_FALSE(digest.ok());
+  EXPECT_EQ(digest.failure().kind, FailureKind::kInput);
+  EXPECT_EQ(artifacts_.upload_offsets.size(), 1u);
+}
+
 TEST_F(Transfer, WhatTheServerHasIsNotSentAgain) {
   artifacts_.complete[sha256("mesh")] = "mesh";
   ASSERT_TRUE(upload_mesh(connection_, folder_.write("mesh.stl", "mesh")).ok());

@@ -31,6 +31,9 @@ class FakeWorkerService final : public v1::WorkerService::Service {
   bool cancel = false;
   bool take_lease_away = false;
   int refuse_completions = 0;
+  grpc::StatusCode refusal = grpc::StatusCode::UNAVAILABLE;
+  bool refused = false;
+  int beats_after_refusal = 0;
   bool stopping = false;
 
   grpc::Status Lease(grpc::ServerContext* context, const v1::LeaseRequest*,
@@ -49,6 +52,7 @@ class FakeWorkerService final : public v1::WorkerService::Service {
                          v1::HeartbeatResponse* response) override {
     const std::lock_guard lock(mutex);
     heartbeats.push_back(*request);
+    if (refused) ++beats_after_refusal;
     changed.notify_all();
     if (take_lease_away) return {grpc::StatusCode::ABORTED, "another worker has the job"};
     response->set_cancel(cancel);
@@ -59,7 +63,10 @@ class FakeWorkerService final : public v1::WorkerService::Service {
   grpc::Status Complete(grpc::ServerContext*, const v1::CompleteRequest* request,
                         v1::CompleteResponse*) override {
     const std::lock_guard lock(mutex);
-    if (refuse_completions-- > 0) return {grpc::StatusCode::UNAVAILABLE, "restarting"};
+    if (refuse_completions-- > 0) {
+      refused = true;
+      return {refusal, "not now"};
+    }
     completions.push_back(*request);
     changed.notify_all();
     return grpc::Status::OK;
@@ -232,10 +239,27 @@ TEST_F(AgentTest, AStoppedWorkerHandsItsJobBackAtOnce) {
 }
 
 TEST_F(AgentTest, ACompletionIsSentUntilTheServerTakesIt) {
-  workers_.refuse_completions = 2;
+  for (const auto code : {grpc::StatusCode::UNAVAILABLE, grpc::StatusCode::RESOURCE_EXHAUSTED}) {
+    {
+      const std::lock_guard lock(workers_.mutex);
+      workers_.refusal = code;
+      workers_.refuse_completions = 2;
+      workers_.completions.clear();
+    }
+    assign();
+    if (!agent_.joinable()) start_agent(kGoodJob);
+    EXPECT_EQ(completion().state(), v1::JOB_STATE_SUCCEEDED);
+  }
+}
+
+TEST_F(AgentTest, HeartbeatsKeepTheLeaseWhileTheServerDoesNotTakeTheCompletion) {
+  workers_.refusal = grpc::StatusCode::RESOURCE_EXHAUSTED;
+  workers_.refuse_completions = 3;
   assign();
   start_agent(kGoodJob);
   EXPECT_EQ(completion().state(), v1::JOB_STATE_SUCCEEDED);
+  const std::lock_guard lock(workers_.mutex);
+  EXPECT_GE(workers_.beats_after_refusal, 3);
 }
 
 TEST_F(AgentTest, InterruptedTransfersGoOnWhereTheyStopped) {
@@ -255,6 +279,31 @@ TEST_F(AgentTest, InterruptedTransfersGoOnWhereTheyStopped) {
   ASSERT_TRUE(download_artifact(*stub, digest->sha256, folder_.path() / "back", {}).ok());
   EXPECT_EQ(artifacts_.download_offsets, (std::vector<std::int64_t>{0, 300'000}));
   EXPECT_EQ(std::filesystem::file_size(folder_.path() / "back"), big.size());
+}
+
+TEST_F(AgentTest, AKeptPartOfAnotherContentIsSentOnceMoreFromTheBeginning) {
+  const auto sha256 = [this](const std::string& content) {
+    const std::filesystem::path file = folder_.path() / "content";
+    std::ofstream(file) << content;
+    return digest_file(file)->sha256;
+  };
+  const std::string result(1'000, 'r');
+  artifacts_.partial[sha256(result)] = std::string(300, 'x');
+  const std::filesystem::path file = folder_.path() / "result";
+  std::ofstream(file) << result;
+  const auto digest = digest_file(file);
+  artifacts_.hash = sha256;
+  const auto stub = v1::ArtifactService::NewStub(
+      grpc::CreateChannel("127.0.0.1:" + std::to_string(port_), grpc::InsecureChannelCredentials()));
+  ASSERT_TRUE(upload_artifact(*stub, file, *digest, {}).ok());
+  EXPECT_EQ(artifacts_.upload_offsets, (std::vector<std::int64_t>{300, 0}));
+  EXPECT_EQ(artifacts_.complete[digest->sha256], result);
+  artifacts_.complete.clear();
+  artifacts_.upload_offsets.clear();
+  artifacts_.partial[digest->sha256] = "x";
+  artifacts_.hash = [](const std::string&) { return std::string("another"); };
+  EXPECT_EQ(upload_artifact(*stub, file, *digest, {}).error_code(), grpc::StatusCode::DATA_LOSS);
+  EXPECT_EQ(artifacts_.upload_offsets, (std::vector<std::int64_t>{1, 0}));
 }
 
 TEST_F(AgentTest, AMeshWithAnotherContentIsRefused) {

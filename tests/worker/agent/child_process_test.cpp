@@ -23,7 +23,7 @@ struct ScriptRun {
 
 ScriptRun run_script(const std::string& script, SuperviseOptions options = {},
                      std::optional<std::uint64_t> address_space = std::nullopt) {
-  auto child = ChildProcess::start({{"/bin/sh", "-c", script}, address_space});
+  auto child = ChildProcess::start({"/bin/sh", {"skinframe-worker", "-c", script}, address_space});
   EXPECT_TRUE(child.ok());
   ScriptRun run;
   options.on_stdout_line = [&, then = options.on_stdout_line](std::string_view line) {
@@ -35,6 +35,10 @@ ScriptRun run_script(const std::string& script, SuperviseOptions options = {},
   run.exit = ended.exit;
   run.dropped = ended.dropped_lines;
   return run;
+}
+
+TEST(ChildProcess, GoesByTheNameThatItIsGiven) {
+  EXPECT_THAT(run_script("echo $0").out, testing::ElementsAre("skinframe-worker"));
 }
 
 TEST(ChildProcess, EveryLineArrivesInOrderAndTheExitCodeWithIt) {
@@ -58,7 +62,8 @@ TEST(ChildProcess, TheSignalThatKilledItIsTold) {
 }
 
 TEST(ChildProcess, AProgramThatIsNotThereIsAnErrorThatNamesIt) {
-  const auto child = ChildProcess::start({{"/nowhere/skinframe-worker", "run-job"}, std::nullopt});
+  const auto child =
+      ChildProcess::start({"/nowhere/skinframe-worker", {"skinframe-worker", "run-job"}, std::nullopt});
   ASSERT_FALSE(child.ok());
   EXPECT_EQ(child.error().kind, ErrorKind::kIo);
   EXPECT_THAT(child.error().message, testing::HasSubstr("/nowhere/skinframe-worker"));
