@@ -6,6 +6,8 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <stop_token>
+#include <thread>
 
 #include "client/jobs/client.h"
 #include "client/jobs/watch.h"
@@ -17,19 +19,18 @@
 namespace skinframe::client {
 namespace {
 
-// What a signal means while a job is followed.
+// What a signal means while a job is followed. The call that cancels has a thread of its own, so that a
+// further signal is heard while it hangs.
 class CancelOnSignal {
  public:
   CancelOnSignal(const Connection& connection, Interrupts& interrupts, ProgressDisplay& display,
                  std::string job_id)
-      : connection_(connection.with_stop({})),
-        interrupts_(interrupts),
-        display_(display),
-        job_id_(std::move(job_id)) {}
+      : connection_(connection), interrupts_(interrupts), display_(display), job_id_(std::move(job_id)) {}
 
   void operator()(int signal) {
-    if (asked_) {
-      std::stop_source(interrupts_.stop_source()).request_stop();
+    if (cancelling_.joinable()) {
+      cancelling_.request_stop();
+      leave();
       return;
     }
     if (signal == SIGINT && ::isatty(STDIN_FILENO) == 1 && ::isatty(STDERR_FILENO) == 1) {
@@ -39,20 +40,23 @@ class CancelOnSignal {
       display_.pause(false);
       if (answer == Answer::kNo) return;
     }
-    asked_ = true;
     display_.say("cancelling the job");
-    const auto cancelled = cancel_job(connection_, job_id_);
-    if (cancelled) return;  // the watch sees the end
-    display_.say("skinframe: " + cancelled.failure().message);
-    std::stop_source(interrupts_.stop_source()).request_stop();
+    cancelling_ = std::jthread([this](const std::stop_token& stop) {
+      const auto cancelled = cancel_job(connection_.with_stop(stop), job_id_);
+      if (cancelled || stop.stop_requested()) return;  // the watch sees the end, or nobody waits for it
+      display_.say("skinframe: " + cancelled.failure().message);
+      leave();
+    });
   }
 
  private:
-  Connection connection_;
+  void leave() { std::stop_source(interrupts_.stop_source()).request_stop(); }
+
+  const Connection& connection_;
   Interrupts& interrupts_;
   ProgressDisplay& display_;
   std::string job_id_;
-  bool asked_ = false;
+  std::jthread cancelling_;  // last: its end is waited for while the rest is there
 };
 
 // Whether the end needs words beyond the table.
@@ -62,7 +66,8 @@ bool all_well(v1::JobState state, v1::Reason reason) {
 
 Done watch_with_display(const Connection& connection, Interrupts& interrupts, const std::string& job_id) {
   ProgressDisplay display(stderr, ::isatty(STDERR_FILENO) == 1, *connection.clock);
-  const Interrupts::Handling handling(interrupts, CancelOnSignal(connection, interrupts, display, job_id));
+  CancelOnSignal cancel(connection, interrupts, display, job_id);
+  const Interrupts::Handling handling(interrupts, [&](int signal) { cancel(signal); });
   WatchOptions options;
   options.on_lost = [&] { display.say("the server does not answer; watching again as soon as it does"); };
   return watch_job(connection, job_id, options, [&](const v1::JobEvent& event) {
@@ -94,10 +99,13 @@ ExitCode tell(const Failure& failure) {
 
 ExitCode follow_job(const Connection& connection, Interrupts& interrupts, const std::string& job_id,
                     const FollowOptions& options) {
+  const auto tell_cause = [&](const Failure& failure) {
+    return tell(options.cause ? options.cause().value_or(failure) : failure);
+  };
   if (const auto watched = watch_with_display(connection, interrupts, job_id); !watched)
-    return tell(watched.failure());
+    return tell_cause(watched.failure());
   const auto job = get_job(connection, job_id);
-  if (!job) return tell(job.failure());
+  if (!job) return tell_cause(job.failure());
   ExitCode code = exit_code(job->state(), job->reason());
   std::size_t files = 0;
   if (!options.out.empty() && job->files_size() > 0) {
@@ -105,7 +113,7 @@ ExitCode follow_job(const Connection& connection, Interrupts& interrupts, const 
     if (written) {
       files = written->size();
     } else {
-      const ExitCode failed = tell(written.failure());
+      const ExitCode failed = tell_cause(written.failure());
       if (code == kExitSuccess || code == kExitPartial) code = failed;
     }
   }

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 
 #include "client/call/connect.h"
@@ -17,6 +19,8 @@ ExitCode tell(const Failure& failure);
 struct FollowOptions {
   std::filesystem::path out;  // empty: results are not downloaded
   bool json = false;          // the final job on stdout instead of the table
+  // Why the server cannot be reached any more, where the caller knows: told in place of what the calls say.
+  std::function<std::optional<Failure>()> cause = {};
 };
 
 // Shows the progress, downloads, reports, and returns the exit code of the job's end. On Ctrl-C the job is

@@ -56,9 +56,10 @@ ExitCode run_on(EmbeddedFarm& farm, Interrupts& interrupts, const GlobalArgument
   auto connection = connect(options);
   if (!connection) return tell(connection.failure());
   connection->stop = interrupts.stop_source().get_token();
+  const auto cause = [&farm] { return farm.failure(); };
   const auto submitted = upload_and_submit(*connection, arguments.job, request);
-  if (!submitted) return tell(submitted.failure());
-  return follow_job(*connection, interrupts, submitted->job().job_id(), {arguments.out, global.json});
+  if (!submitted) return tell(cause().value_or(submitted.failure()));
+  return follow_job(*connection, interrupts, submitted->job().job_id(), {arguments.out, global.json, cause});
 }
 
 // One event of `watch` on stdout, the same wherever it is printed.
@@ -106,10 +107,10 @@ ExitCode run(const GlobalArguments& global, const RunArguments& arguments) {
   if (const auto mesh = digest_mesh_file(arguments.job.mesh); !mesh) return tell(mesh.failure());
   Interrupts interrupts;
   EmbeddedFarm farm(arguments.data, interrupts.stop_source());
-  ExitCode code = run_on(farm, interrupts, global, arguments, *request);
-  if (const auto failure = farm.failure()) code = tell(*failure);
+  const ExitCode code = run_on(farm, interrupts, global, arguments, *request);
   if (code == kExitFailed || code == kExitUnreachable) {
-    fmt::print(stderr, "The logs of server and worker are in {}\n", farm.keep_logs().string());
+    const auto logs = farm.keep_logs();  // empty: a program is missing, there are none
+    if (!logs.empty()) fmt::print(stderr, "The logs of server and worker are in {}\n", logs.string());
   }
   return code;
 }

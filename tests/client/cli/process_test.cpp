@@ -3,11 +3,17 @@
 // them.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <spawn.h>
 #include <stdlib.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
 
+#include "client/call/retry.h"
 #include "tests/client/fake/fake_server.h"
 #include "tests/client/fake/temporary_folder.h"
 
@@ -157,6 +163,56 @@ TEST_F(Program, RunStartsServerAndWorkerAndStopsThemAgain) {
   EXPECT_TRUE(std::filesystem::is_empty(temporary));
   std::istringstream in(folder_.read("pids"));
   for (std::string pid; in >> pid;) EXPECT_FALSE(std::filesystem::exists("/proc/" + pid)) << pid;
+}
+
+TEST_F(Program, AServerThatDiesIsToldInOneSentence) {
+  jobs_.job.set_job_id("j1");
+  jobs_.hang = true;
+  const std::string gate = folder_.path() / "gate";
+  ASSERT_EQ(::mkfifo(gate.c_str(), 0600), 0);
+  const std::string program =
+      install("while [ \"$1\" != --port-file ]; do shift; done\necho " + address_ + " >\"$2\"; read go <" +
+                  gate + "; echo 'the disk is full' >&2; exit 1\n",
+              "echo go >" + gate + "; trap 'kill $!; exit 0' TERM; tail -f /dev/null & wait\n");
+  environment_ = "TMPDIR=" + folder_.path().string();
+  const Ran ran = run("run " + mesh() + " --printer p --out o", program);
+  EXPECT_EQ(ran.code, 5) << ran.err;
+  EXPECT_THAT(ran.err, HasSubstr("skinframe: the embedded server ended: the disk is full\n"));
+  EXPECT_EQ(ran.err.find("skinframe: "), ran.err.rfind("skinframe: ")) << ran.err;
+}
+
+TEST_F(Program, AMissingServerNamesNoFolderOfLogs) {
+  const std::string program = install("exit 0\n", "exit 0\n");
+  std::filesystem::remove(folder_.path() / "bin" / "skinframe-server");
+  const Ran ran = run("run " + mesh() + " --printer p --out o", program);
+  EXPECT_EQ(ran.code, 5) << ran.err;
+  EXPECT_THAT(ran.err, Not(HasSubstr("The logs")));
+}
+
+TEST_F(Program, ASecondSignalIsHeardWhileTheCancellationHangs) {
+  jobs_.job.set_job_id("j1");
+  jobs_.hang = true;
+  std::vector<std::string> words = {SKINFRAME_PROGRAM, "--server", address_, "submit", mesh(),
+                                    "--printer",       "p",        "--watch"};
+  std::vector<char*> arguments;
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  pid_t pid = 0;
+  ASSERT_EQ(::posix_spawn(&pid, words[0].c_str(), nullptr, nullptr, arguments.data(), environ), 0);
+  const auto await = [&](const int& hanging) {
+    std::unique_lock lock(jobs_.mutex);
+    return jobs_.called.wait_for(lock, std::chrono::seconds(20), [&] { return hanging > 0; });
+  };
+  EXPECT_TRUE(await(jobs_.hanging_watches));
+  ::kill(pid, SIGTERM);
+  EXPECT_TRUE(await(jobs_.hanging_cancels));
+  const auto second = std::chrono::steady_clock::now();
+  ::kill(pid, SIGTERM);
+  int status = 0;
+  ASSERT_EQ(::waitpid(pid, &status, 0), pid);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 6);
+  EXPECT_LT(std::chrono::steady_clock::now() - second, RetryPolicy().deadline / 2);
 }
 
 TEST_F(Program, AServerThatDoesNotStartIsFiveAndItsLogStays) {

@@ -4,6 +4,8 @@
 
 #include <grpcpp/grpcpp.h>
 
+#include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <string>
 #include <vector>
@@ -21,6 +23,10 @@ class FakeJobs final : public v1::JobService::Service {
   std::vector<std::size_t> break_after;    // events before the k-th stream breaks; none: it stays whole
   std::vector<v1::SubmitJobRequest> submissions;  // each attempt
   std::vector<grpc::Status> refusals;             // of the first submissions
+  bool hang = false;               // watches stay open after their events, and CancelJob does not answer
+  std::condition_variable called;  // with the mutex: one of the two below has risen
+  int hanging_watches = 0;
+  int hanging_cancels = 0;
 
   void add_event(v1::JobEvent event) {
     event.set_sequence(static_cast<std::int64_t>(events.size()) + 1);
@@ -60,9 +66,9 @@ class FakeJobs final : public v1::JobService::Service {
     return grpc::Status::OK;
   }
 
-  grpc::Status WatchJob(grpc::ServerContext*, const v1::WatchJobRequest* request,
+  grpc::Status WatchJob(grpc::ServerContext* context, const v1::WatchJobRequest* request,
                         grpc::ServerWriter<v1::JobEvent>* writer) override {
-    const std::lock_guard lock(mutex);
+    std::unique_lock lock(mutex);
     const std::size_t stream = watched_from.size();
     watched_from.push_back(request->after_sequence());
     std::size_t sent = 0;
@@ -74,7 +80,21 @@ class FakeJobs final : public v1::JobService::Service {
       writer->Write(event);
       ++sent;
     }
+    if (hang) until_hung_up(*context, lock, hanging_watches);
     return grpc::Status::OK;
+  }
+
+  grpc::Status CancelJob(grpc::ServerContext* context, const v1::CancelJobRequest*, v1::Job*) override {
+    std::unique_lock lock(mutex);
+    if (hang) until_hung_up(*context, lock, hanging_cancels);
+    return {grpc::StatusCode::UNAVAILABLE, "not now"};
+  }
+
+ private:
+  void until_hung_up(grpc::ServerContext& context, std::unique_lock<std::mutex>& lock, int& hanging) {
+    ++hanging;
+    called.notify_all();
+    while (!context.IsCancelled()) called.wait_for(lock, std::chrono::milliseconds(5));
   }
 };
 
