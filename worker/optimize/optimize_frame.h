@@ -40,7 +40,8 @@ struct OptimizeOptions {
   // around each free node of half width region_share times the distance to its nearest neighbour.
   std::function<NodeRegions(const Frame&, const std::vector<double>& radii_mm)> convex_regions;
   // Geometry's veto on a moved and re-sized frame. False: the pass's move is halved up to max_move_halvings
-  // times, then the pass is dropped. Empty: every frame is accepted.
+  // times, then the pass is dropped. Topology drops a removal that turns an accepted frame into one that is
+  // not. Empty: every frame is accepted.
   std::function<bool(const Frame&, const std::vector<double>& radii_mm)> accepts;
 
   // Interior point: scaled Karush-Kuhn-Tucker error <= kkt_tolerance (nondimensional problem), range (0,

@@ -57,6 +57,15 @@ ProgramRequest removal_request(const Design& design) {
   return request;
 }
 
+// Bounds know the clearance of nodes where they first stood. Once geometry has moved them, a strut that grows
+// may leave what the caller accepts.
+bool loses_acceptance(const Design& before, const Frame& frame, const std::vector<double>& areas_mm2,
+                      const OptimizeOptions& options) {
+  const auto& accepts = options.accepts;
+  return accepts && !accepts(frame, radii_of(areas_mm2)) &&
+         accepts(before.problem.frame, radii_of(before.areas_mm2));
+}
+
 // The sized frame without the struts whose area fell to `share` of their lower bound, if it is feasible and
 // not larger.
 std::optional<Design> threshold_and_size(const Design& design, const std::vector<double>& areas_mm2,
@@ -87,6 +96,7 @@ std::optional<Design> threshold_and_size(const Design& design, const std::vector
     SizedFrame sized = size_frame(shrunk.problem, shrunk.areas_mm2, session);
     if (sized.cancelled) return std::nullopt;
     if (!sized.feasible() || sized.volume_mm3() > (1 + kVolumeTie) * design.volume_mm3) continue;
+    if (loses_acceptance(design, shrunk.problem.frame, sized.areas_mm2, session.options())) continue;
     take_sizing(shrunk, std::move(sized));
     return shrunk;
   }

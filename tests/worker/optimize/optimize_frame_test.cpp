@@ -116,6 +116,19 @@ TEST(OptimizeFrame, InfeasibleEndsWithTheBestIterateAndItsName) {
   EXPECT_NEAR(evaluate(r.problem, r.radii_mm).max_displacement_mm, *r.best_reachable_displacement_mm, 1e-9);
 }
 
+TEST(TopOpt, RemovalTheCallerDoesNotAcceptIsDropped) {
+  const FrameProblem problem = loaded_egg();
+  OptimizeOptions options;
+  options.geometry = false;
+  ASSERT_LT(optimised(problem, options).topology.struts, static_cast<int>(problem.frame.struts.size()));
+  options.accepts = [&](const Frame& frame, const std::vector<double>&) {
+    return frame.struts.size() == problem.frame.struts.size();
+  };
+  const OptimizeResult r = optimised(problem, options);
+  EXPECT_EQ(r.topology.struts, static_cast<int>(problem.frame.struts.size()));
+  expect_sound(problem, r);
+}
+
 // A bent chain pulled straight: the middle node moves onto the line, and the struts become the bar F L /
 // (gamma epsilon).
 TEST(GeoOpt, BentChainIsStraightened) {
