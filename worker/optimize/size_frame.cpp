@@ -21,6 +21,12 @@ constexpr double kBalanceToleranceMm = 1e-6;
 // A hint is a start when it is at most this far from feasible.
 constexpr double kHintUtilisation = 1.5;
 constexpr double kNearBarrier = 1e-2;
+// A sizing that misses the limits by less than this is thickened, this often at most and with this much room;
+// it remains an optimum while its volume grows by no more than kOptimalRepair.
+constexpr double kRepairableUtilisation = 1.01;
+constexpr int kMostRepairs = 4;
+constexpr double kRepairRoom = 1e-7;
+constexpr double kOptimalRepair = 1e-4;
 
 class Sizing {
  public:
@@ -115,7 +121,8 @@ class Sizing {
     for (;;) {
       ProgramOutcome outcome = solve(cases);
       if (outcome.end == InteriorPointEnd::kCancelled) return outcome;
-      const double factor = limit_factor * std::max(1.0, std::sqrt(std::max(outcome.elastic, 0.0)));
+      // What the cases that took part are held to: with t, never less than the limit itself.
+      const double factor = std::max(1.0, limit_factor * std::sqrt(std::max(outcome.elastic, 0.0)));
       const std::vector<CaseResponse> responses = solver_.solve(outcome.areas_mm2);
       const std::size_t before = cases.size();
       for (int k = 0; k < static_cast<int>(responses.size()); ++k)
@@ -131,14 +138,21 @@ class Sizing {
   SizedFrame least_utilisation(const std::vector<double>& start, double start_utilisation) {
     const double factor = std::isfinite(start_utilisation) ? start_utilisation : 1.0;
     const double enough = kElasticEnough / (factor * factor);
-    const ProgramOutcome outcome = over_cases(start, factor, [&](const std::vector<int>& cases) {
-      ProgramRequest elastic = request(cases);
-      elastic.limit_factor = factor;
-      elastic.elastic = ElasticScope::kLimits;
-      return session_.solve(problem_, elastic, start, [&](const ProgramVector& point, const KktError& error) {
-        return point.elastic <= enough && error.primal <= kElasticError;
+    const auto early = [&](const ProgramVector& point, const KktError& error) {
+      return point.elastic <= enough && error.primal <= kElasticError;
+    };
+    const auto search = [&](const std::vector<double>& from, auto stop) {
+      return over_cases(from, factor, [&](const std::vector<int>& cases) {
+        ProgramRequest elastic = request(cases);
+        elastic.limit_factor = factor;
+        elastic.elastic = ElasticScope::kLimits;
+        return session_.solve(problem_, elastic, from, stop);
       });
-    });
+    };
+    ProgramOutcome outcome = search(start, early);
+    // Its primal error may hide that the limits do not hold after all: then it stopped too early.
+    if (outcome.end == InteriorPointEnd::kGoodEnough && !(utilisation(evaluated(outcome.areas_mm2)) <= 1))
+      outcome = search(outcome.areas_mm2, nullptr);
     if (outcome.end == InteriorPointEnd::kCancelled) return cancelled();
     SizedFrame reached = at(Termination::kInfeasible, outcome.areas_mm2, "");
     const double best = utilisation(reached.evaluation);
@@ -188,6 +202,25 @@ class Sizing {
     return leaning;
   }
 
+  // What misses the limits by the program's tolerance only, thickened until it keeps them.
+  std::optional<SizedFrame> repaired(const SizedFrame& sized) {
+    SizedFrame trial = sized;
+    for (int repair = 0; repair < kMostRepairs; ++repair) {
+      const double used = utilisation(trial.evaluation);
+      if (!(used > 1 && used < kRepairableUtilisation)) return std::nullopt;
+      for (std::size_t j = 0; j < trial.areas_mm2.size(); ++j)
+        trial.areas_mm2[j] = std::clamp(trial.areas_mm2[j] * used * (1 + kRepairRoom), bounds_.lower_mm2[j],
+                                        bounds_.upper_mm2[j]);
+      trial.evaluation = evaluated(trial.areas_mm2);
+      if (!holds(trial.evaluation)) continue;
+      if (trial.volume_mm3() > (1 + kOptimalRepair) * sized.volume_mm3())
+        trial.reason = Termination::kIterationLimit;
+      trial.detail += ", thickened until every limit holds";
+      return trial;
+    }
+    return std::nullopt;
+  }
+
   SizedFrame minimise_volume(const std::vector<double>& start, bool near) {
     const ProgramOutcome outcome = over_cases(start, 1.0, [&](const std::vector<int>& cases) {
       ProgramRequest least = request(cases);
@@ -200,6 +233,7 @@ class Sizing {
                           optimal ? "a local optimum" : "the interior point stopped before its tolerance");
     sized.kkt_error = outcome.kkt_error;
     if (holds(sized.evaluation)) return sized;
+    if (auto thickened = repaired(sized)) return *thickened;
     SizedFrame kept = at(Termination::kIterationLimit, start, "the interior point failed: its start is kept");
     kept.kkt_error = outcome.kkt_error;
     if (holds(kept.evaluation)) return kept;

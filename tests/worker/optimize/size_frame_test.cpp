@@ -91,6 +91,20 @@ TEST(SizeOpt, EveryLoadCaseIsServedThoughOnlyOneIsCritical) {
   EXPECT_NEAR(area(r.radii_mm[1]), 6 * 50 / (1586 * 0.05), 1e-4);
 }
 
+// Both cases are out of reach, the second a little less: at the upper bounds both are as near as they come.
+TEST(SizeOpt, LessCriticalLoadCaseCountsWhenNothingIsFeasible) {
+  FrameProblem problem = bare_problem({{50, 0, 0}, {0, 0, 50}, {0, 0, 0}}, {{0, 2}, {1, 2}});
+  problem.element = ElementModel::kAxial;
+  problem.fixed[0] = problem.fixed[1] = {true, true, true};
+  problem.fixed[2] = {false, true, false};
+  problem.displacement_limit_mm = 0.05;
+  problem.load_cases = {load_at(problem, 2, {400, 0, 0}), load_at(problem, 2, {0, 0, 390})};
+  const OptimizeResult r = size_only(problem);
+  EXPECT_EQ(r.reason, Termination::kInfeasible);
+  ASSERT_TRUE(r.best_reachable_displacement_mm.has_value());
+  EXPECT_NEAR(*r.best_reachable_displacement_mm, 400 * 50 / (1586 * area(5)), 1e-4);
+}
+
 TEST(SizeOpt, FeasibleLowerBoundsAreTheOptimumAndItsBound) {
   FrameProblem problem = chain(3, 60);
   problem.displacement_limit_mm = 0.05;
