@@ -186,7 +186,8 @@ void read_balance(const Field& root, FrameProblem& problem) {
                          root.at("skin_mass").at("centroid_mm").vector<3>()};
   if (!root.has("balance_half_planes")) return;
   const Field planes = root.at("balance_half_planes");
-  const std::size_t count = planes.size(kMaxProblemHalfPlanes);
+  const std::size_t row = 6 * problem.frame.nodes_mm.size() + problem.frame.struts.size();
+  const std::size_t count = planes.size(std::min(kMaxProblemHalfPlanes, kMaxProblemBalanceEntries / row));
   for (std::size_t i = 0; i < count; ++i)
     problem.balance.push_back({planes.at(i).at("normal").vector<2>(), planes.at(i).at("offset_mm").number()});
 }

@@ -35,6 +35,8 @@ inline constexpr std::size_t kMaxProblemNodes = 1'000'000;
 inline constexpr std::size_t kMaxProblemStruts = 8'000'000;
 inline constexpr std::size_t kMaxProblemLoadCases = 1'000;
 inline constexpr std::size_t kMaxProblemHalfPlanes = 10'000;
+// Half planes times (6 nodes + struts): each is a dense row of the optimiser's system.
+inline constexpr std::size_t kMaxProblemBalanceEntries = 50'000'000;
 inline constexpr std::size_t kMaxProblemForces = 50'000'000;  // load cases times nodes
 
 struct ProblemFile {

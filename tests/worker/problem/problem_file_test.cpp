@@ -98,6 +98,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadField{[](json& d) { d["stages"] = {"geometry"}; }, "stages: \"size\" must be among them"},
         BadField{[](json& d) { d["order"] = "any"; }, "order: \"any\""},
         BadField{[](json& d) { d["free_nodes"] = {0}; }, "free_nodes: node 0 is fixed"},
+        // 6 * 20000 nodes + 6 struts: 50e6 entries are 416 rows.
+        BadField{[](json& d) {
+                   while (d["nodes"].size() < 20'000) d["nodes"].push_back({1.0 * d["nodes"].size(), 0, 9});
+                   d["balance_half_planes"] = json(417, json{{"normal", {1, 0}}, {"offset_mm", 9}});
+                 },
+                 "balance_half_planes: 417 entries, at most 416 are taken"},
         BadField{[](json& d) { d = json::array(); }, "problem: must be an object"}));
 
 TEST(ProblemFile, MissingFileAndBrokenJsonAreOneSentence) {
