@@ -36,7 +36,7 @@ struct AgentOptions {
   Status validate() const;
 };
 
-// Works until SIGTERM or SIGINT, which it blocks: call it before any other thread starts. On the signal the
+// Works until SIGTERM or SIGINT, whichever thread they reach; afterwards both are ignored. On the signal the
 // running jobs are stopped and handed back: another worker takes them over at once, and no attempt is lost.
 // Returns the process's exit code: 0 after a clean stop, 1 when it could not start (the reason is logged).
 int run_agent(const AgentOptions& options);

@@ -6,6 +6,8 @@
 #include <google/protobuf/util/time_util.h>
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
 
 #include <condition_variable>
 #include <deque>
@@ -236,6 +238,20 @@ TEST_F(AgentTest, AStoppedWorkerHandsItsJobBackAtOnce) {
   EXPECT_EQ(done.state(), v1::JOB_STATE_CANCELLED);
   EXPECT_FALSE(done.retryable());
   EXPECT_EQ(done.detail(), "worker stopped");
+}
+
+// The server's threads in this process have no signal blocked, as a library's have not.
+TEST_F(AgentTest, AStopSignalEndsTheAgentCleanlyWhicheverThreadItReaches) {
+  options_.server_address = "127.0.0.1:" + std::to_string(port_);
+  options_.self_executable = folder_.script("while :; do :; done\n");
+  assign();
+  int code = -1;
+  agent_ = std::thread([&] { code = run_agent(options_); });
+  ASSERT_TRUE(wait_for([&] { return !workers_.heartbeats.empty(); }));
+  ::kill(::getpid(), SIGTERM);
+  agent_.join();
+  EXPECT_EQ(code, 0);
+  EXPECT_EQ(completion().detail(), "worker stopped");
 }
 
 TEST_F(AgentTest, ACompletionIsSentUntilTheServerTakesIt) {
