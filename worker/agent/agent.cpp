@@ -5,15 +5,12 @@
 #include <google/protobuf/util/time_util.h>
 #include <grpcpp/create_channel.h>
 #include <grpcpp/security/credentials.h>
-#include <poll.h>
 #include <signal.h>
 #include <spdlog/spdlog.h>
-#include <sys/eventfd.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
-#include <cerrno>
 #include <fstream>
 #include <random>
 #include <sstream>
@@ -25,6 +22,7 @@
 #include "worker/agent/child_process.h"
 #include "worker/agent/job_runner.h"
 #include "worker/agent/work_folder.h"
+#include "worker/run/stop_signals.h"
 
 namespace skinframe {
 namespace {
@@ -121,58 +119,6 @@ class Slot {
   std::unique_ptr<v1::WorkerService::Stub> worker_;
   std::unique_ptr<v1::ArtifactService::Stub> artifacts_;
   v1::LeaseRequest request_;
-};
-
-std::atomic<int> stop_event{-1};  // an eventfd, for the handler
-
-extern "C" void note_stop_signal(int) {
-  const int before = errno;
-  const std::uint64_t one = 1;
-  const ssize_t ignored = ::write(stop_event, &one, sizeof one);  // full: it has been told already
-  static_cast<void>(ignored);
-  errno = before;
-}
-
-// SIGTERM and SIGINT as something to wait for. By a handler, not by blocking alone: libraries (OpenBLAS)
-// start threads when they are loaded, which have nothing blocked, and a signal that reached one of them would
-// end the process in the midst of its jobs. Our threads block them, and so do children until they are at
-// exec.
-class StopSignals {
- public:
-  StopSignals() : event_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
-    SKINFRAME_CHECK(event_.get() >= 0);
-    stop_event = event_.get();
-    ::sigemptyset(&signals_);
-    struct sigaction action {};
-    action.sa_handler = note_stop_signal;
-    action.sa_flags = SA_RESTART;
-    for (const int signal : {SIGTERM, SIGINT}) {
-      ::sigaddset(&signals_, signal);
-      ::sigaction(signal, &action, nullptr);
-    }
-    ::pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
-  }
-  ~StopSignals() {
-    for (const int signal : {SIGTERM, SIGINT}) ::signal(signal, SIG_IGN);  // one more while we end
-  }
-  StopSignals(const StopSignals&) = delete;
-  StopSignals& operator=(const StopSignals&) = delete;
-
-  // For one thread, which from then on takes the signals.
-  bool came_within(milliseconds time) const {
-    ::pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
-    pollfd event{event_.get(), POLLIN, 0};
-    return ::poll(&event, 1, static_cast<int>(time.count())) > 0 && take();
-  }
-
- private:
-  bool take() const {
-    std::uint64_t count = 0;
-    return ::read(event_.get(), &count, sizeof count) == sizeof count;
-  }
-
-  agent::Descriptor event_;
-  sigset_t signals_{};
 };
 
 }  // namespace

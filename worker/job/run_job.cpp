@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/job/run_job.h"
 
-#include <signal.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <chrono>
 #include <new>
 #include <thread>
 
@@ -12,6 +12,7 @@
 #include "worker/job/read_job.h"
 #include "worker/pipeline/pipeline.h"
 #include "worker/pipeline/write_json.h"
+#include "worker/run/stop_signals.h"
 
 namespace skinframe {
 namespace {
@@ -65,16 +66,11 @@ json work(const JobFile& file, const std::filesystem::path& out_dir, std::stop_t
 }  // namespace
 
 int run_job(const std::filesystem::path& work_dir) {
-  sigset_t term;
-  sigemptyset(&term);
-  sigaddset(&term, SIGTERM);
-  sigaddset(&term, SIGINT);
-  pthread_sigmask(SIG_BLOCK, &term, nullptr);
+  StopSignals signals;
   std::stop_source stop;
-  std::jthread listener([&term, &stop](std::stop_token done) {
-    const timespec patience{0, 50'000'000};
+  const std::jthread listener([&](std::stop_token done) {
     while (!done.stop_requested())
-      if (sigtimedwait(&term, nullptr, &patience) > 0) stop.request_stop();
+      if (signals.came_within(std::chrono::milliseconds(50))) stop.request_stop();
   });
 
   json outcome;

@@ -6,7 +6,7 @@
 
 namespace skinframe {
 
-// Blocks SIGTERM for itself: call it before any other thread starts. Events go to stdout, log lines to stderr.
+// Takes SIGTERM as the wish to end: call it before any other thread of ours starts. Events go to stdout, log lines to stderr.
 // Returns the process's exit code: 0 once outcome.json stands, whatever it says; 1 when it cannot be written.
 int run_job(const std::filesystem::path& work_dir);
 
