@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The main job over bodies, printers and loads: it ends SUCCEEDED or INFEASIBLE and never otherwise, every claim of what it
-// wrote is checked, and a slicer takes the mesh as manifold.
+// The main job over bodies, printers and loads: it ends SUCCEEDED or INFEASIBLE and never otherwise, every
+// claim of what it wrote is checked, and a slicer takes the mesh as manifold.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -16,8 +16,8 @@ using nlohmann::json;
 
 struct Body {
   std::string name;
-  bool shared = false;        // of the corpus, not ours
-  bool thin_limbs = false;    // exempt from the bound on the ratio
+  bool shared = false;      // of the corpus, not ours
+  bool thin_limbs = false;  // exempt from the bound on the ratio
 };
 struct Setting {
   std::string printer, size_mm;
@@ -37,8 +37,9 @@ TEST_P(MainJob, EndsAsItShouldAndItsFilesKeepTheirClaims) {
     ASSERT_EQ(run({binary("skinframe"), "sample", body.name, "--out", mesh}, scratch.path()).exit_code, 0);
   }
   const auto out = scratch / "result";
-  std::vector<std::string> words = {binary("skinframe"), "run",    mesh,          "--printer", setting.printer,
-                                    "--size",            setting.size_mm, "--out", out};
+  std::vector<std::string> words = {binary("skinframe"), "run",           mesh,
+                                    "--printer",         setting.printer, "--size",
+                                    setting.size_mm,     "--out",         out};
   if (loaded) words.insert(words.end(), {"--load", "side:top:20,0,0"});
   const Ran ran = run(words, scratch.path(), Seconds(600));
   ASSERT_TRUE(ran.exit_code == 0 || ran.exit_code == 4) << ran.exit_code << "\n" << ran.err;
@@ -55,7 +56,8 @@ TEST_P(MainJob, EndsAsItShouldAndItsFilesKeepTheirClaims) {
     EXPECT_NE(ran.err.find("mm"), std::string::npos) << ran.err;
     return;
   }
-  EXPECT_EQ(printer.at("balance").get<std::string>(), report.at("mesh").at("stands").get<bool>() ? "holds" : "not_standing");
+  EXPECT_EQ(printer.at("balance").get<std::string>(),
+            report.at("mesh").at("stands").get<bool>() ? "holds" : "not_standing");
   if (!body.thin_limbs) {
     EXPECT_LT(printer.at("ratio").get<double>(), 0.45);
   }
@@ -64,12 +66,14 @@ TEST_P(MainJob, EndsAsItShouldAndItsFilesKeepTheirClaims) {
     const json frame = json::parse(read_file(out / setting.printer / "frame.json"));
     int internal = 0;
     for (const json& strut : frame.at("struts")) internal += strut.at("skin").get<bool>() ? 0 : 1;
-    const bool balance_is_tight = printer.at("balance") == "holds" && printer.at("balance_margin_mm").get<double>() < 1.0;
+    const bool balance_is_tight =
+        printer.at("balance") == "holds" && printer.at("balance_margin_mm").get<double>() < 1.0;
     if (!balance_is_tight) {
       EXPECT_EQ(internal, 0);
     }
   }
-  const Ran slicer = run({"/usr/bin/prusa-slicer", "--info", out / setting.printer / "skin-frame.stl"}, scratch.path());
+  const Ran slicer =
+      run({"/usr/bin/prusa-slicer", "--info", out / setting.printer / "skin-frame.stl"}, scratch.path());
   EXPECT_NE(slicer.out.find("manifold = yes"), std::string::npos) << slicer.out << slicer.err;
 }
 
@@ -84,15 +88,17 @@ std::string name_of(const testing::TestParamInfo<std::tuple<Body, Setting, bool>
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, MainJob,
-                         testing::Combine(testing::Values(Body{"hanging-ball"}, Body{"hanging-ball-small-base"}, Body{"ring"},
-                                                          Body{"stool", false, true}, Body{"relief"}, Body{"egg"},
-                                                          Body{"bracket"}),
+                         testing::Combine(testing::Values(Body{"hanging-ball"},
+                                                          Body{"hanging-ball-small-base"}, Body{"ring"},
+                                                          Body{"stool", false, true}, Body{"relief"},
+                                                          Body{"egg"}, Body{"bracket"}),
                                           testing::ValuesIn(kSettings), testing::Bool()),
                          name_of);
 
 INSTANTIATE_TEST_SUITE_P(Corpus, MainJob,
-                         testing::Combine(testing::Values(Body{"spot_low", true}, Body{"fish", true}, Body{"goathead", true},
-                                                          Body{"hand", true}, Body{"torus", true}, Body{"koala_low", true}),
+                         testing::Combine(testing::Values(Body{"spot_low", true}, Body{"fish", true},
+                                                          Body{"goathead", true}, Body{"hand", true},
+                                                          Body{"torus", true}, Body{"koala_low", true}),
                                           testing::ValuesIn(kSettings), testing::Bool()),
                          name_of);
 

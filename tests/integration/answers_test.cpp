@@ -31,7 +31,8 @@ class Answers : public testing::Test {
     EXPECT_NE(ran.err.find(about), std::string::npos) << ran.err;
   }
 
-  // All that a run starts carries a path below the scratch folder on its command line, where TMPDIR names that.
+  // All that a run starts carries a path below the scratch folder on its command line, where TMPDIR names
+  // that.
   int processes_of_ours() const {
     int count = 0;
     for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
@@ -52,8 +53,8 @@ class Answers : public testing::Test {
 };
 
 TEST_F(Answers, RunMakesFilesThatTheCheckSaysYesTo) {
-  const Ran ran = skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--printer", "makerbot-replicator-2",
-                             "--size", "60", "--skin-nodes", "80", "--out", out()});
+  const Ran ran = skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--printer",
+                             "makerbot-replicator-2", "--size", "60", "--skin-nodes", "80", "--out", out()});
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
   const Ran check = skinframe({"check", out()});
   EXPECT_EQ(check.exit_code, 0) << check.out << check.err;
@@ -61,15 +62,17 @@ TEST_F(Answers, RunMakesFilesThatTheCheckSaysYesTo) {
 }
 
 TEST_F(Answers, OnePrinterTooSmallLeavesTheOthersResult) {
-  const Ran ran = skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--printer", "makerbot-replicator-2",
-                             "--size", "200", "--skin-nodes", "100", "--out", out()});
+  const Ran ran =
+      skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--printer", "makerbot-replicator-2",
+                 "--size", "200", "--skin-nodes", "100", "--out", out()});
   EXPECT_EQ(ran.exit_code, 8) << ran.err;
   EXPECT_EQ(skinframe({"check", out()}).exit_code, 0);
 }
 
 TEST_F(Answers, TooLargeForTheOnlyTray) {
-  expect_sentence(skinframe({"run", sample("egg"), "--printer", "makerbot-replicator-2", "--size", "200", "--out", out()}), 3,
-                  "tray");
+  expect_sentence(skinframe({"run", sample("egg"), "--printer", "makerbot-replicator-2", "--size", "200",
+                             "--out", out()}),
+                  3, "tray");
 }
 
 TEST_F(Answers, MissingFile) {
@@ -78,13 +81,17 @@ TEST_F(Answers, MissingFile) {
 }
 
 TEST_F(Answers, FileThatIsNoMesh) {
-  expect_sentence(skinframe({"run", write("notes.stl", "shopping list: bread, milk\n"), "--printer", "sinterstation-hiq", "--out", out()}),
+  expect_sentence(skinframe({"run", write("notes.stl", "shopping list: bread, milk\n"), "--printer",
+                             "sinterstation-hiq", "--out", out()}),
                   3, "neither ASCII STL");
 }
 
 TEST_F(Answers, EmptyFileAndEmptyMesh) {
-  expect_sentence(skinframe({"run", write("empty.stl", ""), "--printer", "sinterstation-hiq", "--out", out()}), 3, "empty");
-  const Ran ran = skinframe({"run", write("nothing.stl", "solid nothing\nendsolid nothing\n"), "--printer", "sinterstation-hiq", "--out", out()});
+  expect_sentence(
+      skinframe({"run", write("empty.stl", ""), "--printer", "sinterstation-hiq", "--out", out()}), 3,
+      "empty");
+  const Ran ran = skinframe({"run", write("nothing.stl", "solid nothing\nendsolid nothing\n"), "--printer",
+                             "sinterstation-hiq", "--out", out()});
   EXPECT_EQ(ran.exit_code, 3) << ran.err;
 }
 
@@ -95,14 +102,21 @@ TEST_F(Answers, UnknownPrinterNamesTheKnownOnes) {
 }
 
 TEST_F(Answers, WrongOptionAndOptionOutOfRange) {
-  expect_sentence(skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--colour", "red", "--out", out()}), 2, "--colour");
-  expect_sentence(skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--load", "side:nowhere:1,2,3", "--out", out()}), 2,
-                  "nowhere");
-  EXPECT_EQ(skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--size", "-3", "--out", out()}).exit_code, 2);
+  expect_sentence(
+      skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--colour", "red", "--out", out()}),
+      2, "--colour");
+  expect_sentence(skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--load",
+                             "side:nowhere:1,2,3", "--out", out()}),
+                  2, "nowhere");
+  EXPECT_EQ(
+      skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--size", "-3", "--out", out()})
+          .exit_code,
+      2);
 }
 
 TEST_F(Answers, WhatIsNotBuiltIsRefusedByName) {
-  const Ran ran = skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--smooth", "on", "--out", out()});
+  const Ran ran =
+      skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--smooth", "on", "--out", out()});
   EXPECT_EQ(ran.exit_code, 2) << ran.err;
   EXPECT_NE(ran.err.find("smooth"), std::string::npos) << ran.err;
 }
@@ -112,25 +126,27 @@ TEST_F(Answers, ServerNotRunning) {
 }
 
 TEST_F(Answers, ALoadThatCannotBeCarriedIsInfeasibleWithTheBestReachableValue) {
-  const Ran ran = skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--size", "60", "--skin-nodes", "60", "--load",
-                             "side:top:5000,0,0", "--out", out()});
+  const Ran ran = skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--size", "60",
+                             "--skin-nodes", "60", "--load", "side:top:5000,0,0", "--out", out()});
   expect_sentence(ran, 4, "mm");
 }
 
 TEST_F(Answers, ABodyThatDoesNotStandCannotBeRequiredTo) {
   // An egg laid on its side touches the plate along a line's width only.
-  const Ran ran = skinframe({"run", sample("hanging-ball"), "--printer", "sinterstation-hiq", "--size", "80", "--skin-nodes", "120",
-                             "--up", "x", "--balance", "require", "--out", out()});
+  const Ran ran = skinframe({"run", sample("hanging-ball"), "--printer", "sinterstation-hiq", "--size", "80",
+                             "--skin-nodes", "120", "--up", "x", "--balance", "require", "--out", out()});
   EXPECT_EQ(ran.exit_code, 4) << ran.err;
   EXPECT_NE(ran.err.find("balance"), std::string::npos) << ran.err;
 }
 
 TEST_F(Answers, CtrlCCancelsAndLeavesNoProcessBehind) {
-  Process process({binary("skinframe"), "run", sample("hanging-ball"), "--printer", "sinterstation-hiq", "--size", "200", "--out", out()},
+  Process process({binary("skinframe"), "run", sample("hanging-ball"), "--printer", "sinterstation-hiq",
+                   "--size", "200", "--out", out()},
                   scratch_ / "interrupted", {"TMPDIR=" + scratch_.path().string()});
   // The program, its server, its worker and the job's process.
   ASSERT_TRUE(eventually([&] { return processes_of_ours() == 4 || !process.running(); })) << process.err();
-  ASSERT_TRUE(eventually([&] { return process.err().find("skin") != std::string::npos || !process.running(); }));
+  ASSERT_TRUE(
+      eventually([&] { return process.err().find("skin") != std::string::npos || !process.running(); }));
   EXPECT_EQ(temporary_folders(), 1);
   process.signal(SIGINT);
   EXPECT_EQ(process.wait(Seconds(20)), 6) << process.err();

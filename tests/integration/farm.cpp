@@ -16,9 +16,9 @@ void Farm::start_server() {
   const auto port_file = scratch_ / "port";
   std::filesystem::remove(port_file);
   server_ = std::make_unique<Process>(
-      std::vector<std::string>{binary("skinframe-server"), "--listen", address_.empty() ? "127.0.0.1:0" : address_, "--data",
-                               scratch_ / "data", "--port-file", port_file, "--lease-seconds", "3",
-                               "--heartbeat-seconds", "1"},
+      std::vector<std::string>{binary("skinframe-server"), "--listen",
+                               address_.empty() ? "127.0.0.1:0" : address_, "--data", scratch_ / "data",
+                               "--port-file", port_file, "--lease-seconds", "3", "--heartbeat-seconds", "1"},
       scratch_ / ("server-" + std::to_string(starts_++)));
   ASSERT_TRUE(eventually([&] { return !read_file(port_file).empty(); }, Seconds(30))) << server_->err();
   address_ = read_file(port_file);

@@ -33,7 +33,8 @@ Process::Process(const std::vector<std::string>& command, const fs::path& output
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(127);
   const int null = open("/dev/null", O_RDONLY);
-  const int o = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600), e = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  const int o = open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600),
+            e = open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0600);
   if (null < 0 || o < 0 || e < 0) _exit(127);
   dup2(null, 0);
   dup2(o, 1);
@@ -86,7 +87,8 @@ bool eventually(const std::function<bool()>& condition, Seconds at_most) {
   const auto end = std::chrono::steady_clock::now() + at_most;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;
-    // Other processes have no clock to inject: the one place where a test waits, and never longer than it has to.
+    // Other processes have no clock to inject: the one place where a test waits, and never longer than it has
+    // to.
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
   return true;

@@ -46,7 +46,8 @@ struct Ran {
   std::string out, err;
 };
 // Runs to its end.
-Ran run(const std::vector<std::string>& command, const std::filesystem::path& scratch, Seconds at_most = Seconds(300));
+Ran run(const std::vector<std::string>& command, const std::filesystem::path& scratch,
+        Seconds at_most = Seconds(300));
 
 // Asks again every 10 ms until it holds or the time is over; whether it held.
 bool eventually(const std::function<bool()>& condition, Seconds at_most = Seconds(60));

@@ -35,13 +35,15 @@ class Survival : public testing::Test {
       EXPECT_FALSE(event.is_discarded()) << line;
       // Protobuf's JSON writes 64-bit numbers as strings.
       const json& sequence = event.at("sequence");
-      found.push_back(sequence.is_string() ? std::stoll(sequence.get<std::string>()) : sequence.get<std::int64_t>());
+      found.push_back(sequence.is_string() ? std::stoll(sequence.get<std::string>())
+                                           : sequence.get<std::int64_t>());
     }
     return found;
   }
   void expect_gap_free(const std::vector<std::int64_t>& sequences, std::int64_t first) {
     ASSERT_FALSE(sequences.empty());
-    for (std::size_t i = 0; i < sequences.size(); ++i) ASSERT_EQ(sequences[i], first + static_cast<std::int64_t>(i));
+    for (std::size_t i = 0; i < sequences.size(); ++i)
+      ASSERT_EQ(sequences[i], first + static_cast<std::int64_t>(i));
   }
 
   Scratch scratch_;
@@ -110,7 +112,8 @@ TEST_F(Survival, ACancelledJobEndsWithinTwoSecondsOfWork) {
   ASSERT_TRUE(farm.at_work(id));
   ASSERT_EQ(farm.ask({"cancel", id}).exit_code, 0);
   // 2 s to obey, one heartbeat to hear of it, and room for a busy machine.
-  EXPECT_TRUE(eventually([&] { return farm.state_of(id).find("CANCELLED") != std::string::npos; }, Seconds(5)));
+  EXPECT_TRUE(
+      eventually([&] { return farm.state_of(id).find("CANCELLED") != std::string::npos; }, Seconds(5)));
 }
 
 TEST_F(Survival, AMeshThatCannotBeReadFailsItsJobAndNoOther) {
@@ -119,7 +122,8 @@ TEST_F(Survival, AMeshThatCannotBeReadFailsItsJobAndNoOther) {
   const auto broken = scratch_ / "broken.stl";
   std::ofstream(broken) << "solid nothing\nendsolid\n";
   const std::string bad = farm.submit({broken, "--printer", "sinterstation-hiq", "--size", "100"});
-  const std::string good = farm.submit({mesh(), "--printer", "sinterstation-hiq", "--size", "60", "--skin-nodes", "60"});
+  const std::string good =
+      farm.submit({mesh(), "--printer", "sinterstation-hiq", "--size", "60", "--skin-nodes", "60"});
   EXPECT_EQ(farm.ask({"watch", good}).exit_code, 0);
   EXPECT_NE(farm.state_of(good).find("SUCCEEDED"), std::string::npos);
   const json ended = json::parse(farm.ask({"--json", "get", bad}).out);

@@ -49,7 +49,9 @@ int LocalVerbs::run_sample() const {
     nlohmann::json list = nlohmann::json::array();
     for (const SampleInfo& info : samples()) {
       list.push_back({{"name", info.name}, {"description", info.description}});
-      if (!json_) std::cout << info.name << std::string(28 - std::min<std::size_t>(27, info.name.size()), ' ') << info.description << '\n';
+      if (!json_)
+        std::cout << info.name << std::string(28 - std::min<std::size_t>(27, info.name.size()), ' ')
+                  << info.description << '\n';
     }
     if (json_) std::cout << list.dump(2) << '\n';
     return kOk;

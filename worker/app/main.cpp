@@ -25,18 +25,24 @@ int main(int argc, char** argv) {
       "Examples:\n"
       "  skinframe-worker --server farm:7350 --slots 2      work for that server, two jobs at a time\n"
       "  skinframe-worker solve-frame P.json --out R.json   the optimiser alone\n"
-      "  skinframe-worker check DIR                         judge exported files; 0: every claim holds, 1: one does not\n"
+      "  skinframe-worker check DIR                         judge exported files; 0: every claim holds, 1: "
+      "one does not\n"
       "  skinframe-worker sample --list                     the bodies that ship with the program");
 
   AgentOptions agent;
   std::string work_root, tls_ca;
   app.add_option("--server", agent.server_address, "Server to work for, HOST:PORT")->capture_default_str();
   app.add_option("--slots", agent.slots, "Jobs at a time")->check(CLI::Range(1, 64))->capture_default_str();
-  app.add_option("--work-dir", work_root, "Folder for the files of running jobs (default: a folder under TMPDIR)");
+  app.add_option("--work-dir", work_root,
+                 "Folder for the files of running jobs (default: a folder under TMPDIR)");
   app.add_option("--tls-ca", tls_ca, "PEM file of the certificate authority; turns TLS on");
-  app.add_option("--memory-limit-mb", agent.memory_limit_mb, "Address space of one job's process; 0: no limit")
-      ->check(CLI::NonNegativeNumber)->capture_default_str();
-  app.add_option("--threads", agent.threads_per_job, "Threads of one job")->check(CLI::Range(1, 256))->capture_default_str();
+  app.add_option("--memory-limit-mb", agent.memory_limit_mb,
+                 "Address space of one job's process; 0: no limit")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  app.add_option("--threads", agent.threads_per_job, "Threads of one job")
+      ->check(CLI::Range(1, 256))
+      ->capture_default_str();
   app.add_option("--name", agent.worker_name, "Name shown to people (default: host and process)");
 
   std::string job_dir;

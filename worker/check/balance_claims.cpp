@@ -10,8 +10,8 @@
 namespace skinframe::check {
 namespace {
 
-constexpr double kContactToleranceMm = 1.0;   // the base contact: surface within this of the lowest plane
-constexpr double kMarginToleranceMm = 0.05;   // reported against recomputed
+constexpr double kContactToleranceMm = 1.0;  // the base contact: surface within this of the lowest plane
+constexpr double kMarginToleranceMm = 0.05;  // reported against recomputed
 
 using Polygon = std::vector<Eigen::Vector2d>;
 
@@ -36,9 +36,8 @@ double cross(const Eigen::Vector2d& o, const Eigen::Vector2d& a, const Eigen::Ve
 
 // Andrew's monotone chain, counter-clockwise.
 Polygon convex_hull(Polygon points) {
-  std::sort(points.begin(), points.end(), [](const auto& p, const auto& q) {
-    return p.x() < q.x() || (p.x() == q.x() && p.y() < q.y());
-  });
+  std::sort(points.begin(), points.end(),
+            [](const auto& p, const auto& q) { return p.x() < q.x() || (p.x() == q.x() && p.y() < q.y()); });
   points.erase(std::unique(points.begin(), points.end()), points.end());
   if (points.size() < 3) return points;
   Polygon hull;
@@ -72,7 +71,8 @@ Eigen::Vector3d nominal_centre_of_gravity_mm(const ExportedFrame& frame) {
   double weight = frame.skin_mass_weight_n;
   for (const ExportedStrut& s : frame.struts) {
     const Eigen::Vector3d &a = frame.nodes_mm[s.a], &b = frame.nodes_mm[s.b];
-    const double w = frame.density_g_cm3 * 1e-9 * 9810.0 * std::numbers::pi * s.radius_mm * s.radius_mm * (b - a).norm();
+    const double w =
+        frame.density_g_cm3 * 1e-9 * 9810.0 * std::numbers::pi * s.radius_mm * s.radius_mm * (b - a).norm();
     moment += 0.5 * w * (a + b);
     weight += w;
   }
@@ -82,20 +82,23 @@ Eigen::Vector3d nominal_centre_of_gravity_mm(const ExportedFrame& frame) {
 void claim_balance(const ExportedPrinter& result, const TriangleMesh& outer_mesh, Verdict* verdict) {
   const ExportedFrame& frame = result.frame;
   const Eigen::Vector2d nominal = nominal_centre_of_gravity_mm(frame).head<2>();
-  const Polygon hull = convex_hull(contact_points(outer_mesh, bounding_box(outer_mesh).min.z() + kContactToleranceMm));
+  const Polygon hull =
+      convex_hull(contact_points(outer_mesh, bounding_box(outer_mesh).min.z() + kContactToleranceMm));
   const double nominal_margin = margin_mm(hull, nominal);
   const Eigen::Vector2d printed = volume_centroid(*result.merged).head<2>();
   const double printed_margin = margin_mm(hull, printed);
   const double solid_margin = margin_mm(hull, volume_centroid(outer_mesh).head<2>());
-  const std::string measured =
-      fmt::format("centre of gravity ({:.2f}, {:.2f}) mm is {:.3f} mm inside the base contact (reported {}); of the printed "
-                  "mesh {:.3f} mm; of the solid {:.3f} mm",
-                  nominal.x(), nominal.y(), nominal_margin,
-                  result.balance_margin_mm ? fmt::format("{:.3f}", *result.balance_margin_mm) : "none", printed_margin,
-                  solid_margin);
+  const std::string measured = fmt::format(
+      "centre of gravity ({:.2f}, {:.2f}) mm is {:.3f} mm inside the base contact (reported {}); of the "
+      "printed "
+      "mesh {:.3f} mm; of the solid {:.3f} mm",
+      nominal.x(), nominal.y(), nominal_margin,
+      result.balance_margin_mm ? fmt::format("{:.3f}", *result.balance_margin_mm) : "none", printed_margin,
+      solid_margin);
   if (result.balance == "holds") {
-    verdict->claims.push_back({"balance", nominal_margin >= -1e-6 && printed_margin >= 0 && result.balance_margin_mm &&
-                                              std::abs(nominal_margin - *result.balance_margin_mm) <= kMarginToleranceMm,
+    verdict->claims.push_back({"balance",
+                               nominal_margin >= -1e-6 && printed_margin >= 0 && result.balance_margin_mm &&
+                                   std::abs(nominal_margin - *result.balance_margin_mm) <= kMarginToleranceMm,
                                measured});
   } else if (result.balance == "not_standing") {
     verdict->claims.push_back({"not standing", solid_margin < kMarginToleranceMm,

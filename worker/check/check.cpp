@@ -46,7 +46,8 @@ Result<std::vector<Verdict>> check_directory(const std::filesystem::path& direct
   try {
     for (const ExportedPrinter& result : *exported) verdicts.push_back(judge(result));
   } catch (const std::exception& error) {  // CGAL's preconditions on a surface that is none
-    return invalid_input(fmt::format("{}: the exported surface cannot be examined: {}", directory.string(), error.what()));
+    return invalid_input(
+        fmt::format("{}: the exported surface cannot be examined: {}", directory.string(), error.what()));
   }
   return verdicts;
 }
@@ -69,8 +70,10 @@ std::string to_json_text(const std::vector<Verdict>& verdicts) {
     nlohmann::json claims = nlohmann::json::array();
     for (const Claim& claim : verdict.claims)
       claims.push_back({{"claim", claim.name}, {"holds", claim.holds}, {"measured", claim.measured}});
-    printers.push_back(
-        {{"printer", verdict.printer}, {"holds", verdict.holds()}, {"claims", claims}, {"notes", verdict.notes}});
+    printers.push_back({{"printer", verdict.printer},
+                        {"holds", verdict.holds()},
+                        {"claims", claims},
+                        {"notes", verdict.notes}});
     holds = holds && verdict.holds();
   }
   return nlohmann::json{{"holds", holds}, {"printers", printers}}.dump(2) + "\n";

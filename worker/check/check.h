@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// `skinframe check DIR`: re-reads only the exported files and judges every claim with code of its own. It shares no code
-// with the stages that made them beyond the mesh reader, so that an error there is not repeated here.
+// `skinframe check DIR`: re-reads only the exported files and judges every claim with code of its own. It
+// shares no code with the stages that made them beyond the mesh reader, so that an error there is not
+// repeated here.
 //
-// A result that ended INFEASIBLE makes claims too: that its best frame is in equilibrium, and what it reaches.
+// A result that ended INFEASIBLE makes claims too: that its best frame is in equilibrium, and what it
+// reaches.
 #pragma once
 
 #include <filesystem>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One claim that a result makes, and what the check measured of it. A check that cannot say no proves nothing:
-// every claim has a limit, and tests/worker/check spoils a result for each of them.
+// One claim that a result makes, and what the check measured of it. A check that cannot say no proves
+// nothing: every claim has a limit, and tests/worker/check spoils a result for each of them.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 namespace skinframe::check {
 
 struct Claim {
-  std::string name;      // for example "watertight"
+  std::string name;  // for example "watertight"
   bool holds = false;
   std::string measured;  // what was found, with units, and the limit
 };

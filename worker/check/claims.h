@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The claims, by what they are about. Each function adds its claims to the verdict; tolerances stand beside the claim.
+// The claims, by what they are about. Each function adds its claims to the verdict; tolerances stand beside
+// the claim.
 #pragma once
 
 #include "worker/check/claim.h"
@@ -18,7 +19,8 @@ void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, c
 // Radii (9, 10), slenderness (4, 5), triangulation, counts and nominal volumes (12), struts inside M (7).
 void claim_frame(const ExportedPrinter& result, const Surface* outer, Verdict* verdict);
 
-// The struts of frame.json stand in skin-frame.stl: solid about their axes, wherever these run below the skin.
+// The struts of frame.json stand in skin-frame.stl: solid about their axes, wherever these run below the
+// skin.
 void claim_printed_struts(const ExportedPrinter& result, const TriangleMesh& cavity, const Surface& outer,
                           Verdict* verdict);
 

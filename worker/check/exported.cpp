@@ -20,7 +20,8 @@ Result<json> read_json(const std::filesystem::path& path) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(path, error);
   if (error) return io_error(fmt::format("{}: {}", path.string(), error.message()));
-  if (size > kMaxJsonBytes) return invalid_input(fmt::format("{}: {} bytes are too many", path.string(), size));
+  if (size > kMaxJsonBytes)
+    return invalid_input(fmt::format("{}: {} bytes are too many", path.string(), size));
   std::ifstream in(path);
   json document = json::parse(in, nullptr, false);
   if (document.is_discarded()) return invalid_input(fmt::format("{}: not JSON", path.string()));
@@ -71,8 +72,8 @@ ExportedFrame parse_frame(const json& file) {
   }
   for (const json& item : file.at("skin_triangles")) {
     const std::string place = fmt::format("skin_triangles[{}]", frame.skin_triangles.size());
-    frame.skin_triangles.push_back(
-        {node_index(item.at(0), n, place), node_index(item.at(1), n, place), node_index(item.at(2), n, place)});
+    frame.skin_triangles.push_back({node_index(item.at(0), n, place), node_index(item.at(1), n, place),
+                                    node_index(item.at(2), n, place)});
   }
   frame.fixed.assign(n, {false, false, false});
   for (const json& item : file.at("fixed")) {
@@ -154,16 +155,19 @@ TriangleMesh weld_equal(const TriangleMesh& soup) {
   std::vector<int> renamed(soup.vertices.size());
   for (std::size_t i = 0; i < soup.vertices.size(); ++i) {
     const Eigen::Vector3d& v = soup.vertices[i];
-    const auto [it, fresh] = index_of.try_emplace({v.x(), v.y(), v.z()}, static_cast<int>(welded.vertices.size()));
+    const auto [it, fresh] =
+        index_of.try_emplace({v.x(), v.y(), v.z()}, static_cast<int>(welded.vertices.size()));
     if (fresh) welded.vertices.push_back(v);
     renamed[i] = it->second;
   }
   welded.triangles.reserve(soup.triangles.size());
-  for (const auto& t : soup.triangles) welded.triangles.push_back({renamed[t[0]], renamed[t[1]], renamed[t[2]]});
+  for (const auto& t : soup.triangles)
+    welded.triangles.push_back({renamed[t[0]], renamed[t[1]], renamed[t[2]]});
   return welded;
 }
 
-Result<std::vector<ExportedPrinter>> read_exported(const std::filesystem::path& directory, RunContext& context) {
+Result<std::vector<ExportedPrinter>> read_exported(const std::filesystem::path& directory,
+                                                   RunContext& context) {
   const auto report_path = directory / "report.json";
   auto report = read_json(report_path);
   if (!report) return report.error();

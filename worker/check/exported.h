@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a result folder holds, read back from its files alone: report.json, and for each printer frame.json and
-// skin-frame.stl. Only the mesh reader is shared with the code that wrote them. Units as in the files: mm, N, MPa.
+// What a result folder holds, read back from its files alone: report.json, and for each printer frame.json
+// and skin-frame.stl. Only the mesh reader is shared with the code that wrote them. Units as in the files:
+// mm, N, MPa.
 #pragma once
 
 #include <Eigen/Core>
@@ -65,7 +66,8 @@ struct ExportedPrinter {
 };
 
 // Errors: kIo and kInvalidInput, naming file and field.
-Result<std::vector<ExportedPrinter>> read_exported(const std::filesystem::path& directory, RunContext& context);
+Result<std::vector<ExportedPrinter>> read_exported(const std::filesystem::path& directory,
+                                                   RunContext& context);
 
 // Vertices at exactly the same place become one.
 TriangleMesh weld_equal(const TriangleMesh& soup);

@@ -32,10 +32,11 @@ void claim_radii(const ExportedPrinter& result, Verdict* verdict) {
   }
   const bool radii = thinnest >= result.eta_mm * (1 - 1e-6) && worst_excess <= 1 + 1e-6 &&
                      std::abs(thinnest - result.min_radius_mm) <= 1e-6;
-  verdict->claims.push_back({"radii", radii,
-                             fmt::format("thinnest {:.4f} mm (at least {:.4f}), thickest {:.4f} of its upper bound, {} of "
-                                         "{} struts above it because slenderness asks for it",
-                                         thinnest, result.eta_mm, worst_excess, widened, frame.struts.size())});
+  verdict->claims.push_back(
+      {"radii", radii,
+       fmt::format("thinnest {:.4f} mm (at least {:.4f}), thickest {:.4f} of its upper bound, {} of "
+                   "{} struts above it because slenderness asks for it",
+                   thinnest, result.eta_mm, worst_excess, widened, frame.struts.size())});
   verdict->claims.push_back({"slenderness", worst_slender <= 1 + 1e-6,
                              fmt::format("worst l / (alpha r) is {:.6f}, at most 1", worst_slender)});
 }
@@ -63,13 +64,14 @@ void claim_triangulation(const ExportedFrame& frame, Verdict* verdict) {
     ++skin_struts;
     missing -= edges.count({std::min(s.a, s.b), std::max(s.a, s.b)});
   }
-  verdict->claims.push_back({"skin triangulation", !edges.empty() && open == 0 && missing == 0 && skin_struts == edges.size(),
-                             fmt::format("{} nodes, {} edges, {} triangles, Euler characteristic {}; {} directed edges not "
-                                         "matched once, {} edges without a strut",
-                                         nodes.size(), edges.size(), frame.skin_triangles.size(),
-                                         static_cast<long>(nodes.size()) - static_cast<long>(edges.size()) +
-                                             static_cast<long>(frame.skin_triangles.size()),
-                                         open, missing)});
+  verdict->claims.push_back(
+      {"skin triangulation", !edges.empty() && open == 0 && missing == 0 && skin_struts == edges.size(),
+       fmt::format("{} nodes, {} edges, {} triangles, Euler characteristic {}; {} directed edges not "
+                   "matched once, {} edges without a strut",
+                   nodes.size(), edges.size(), frame.skin_triangles.size(),
+                   static_cast<long>(nodes.size()) - static_cast<long>(edges.size()) +
+                       static_cast<long>(frame.skin_triangles.size()),
+                   open, missing)});
 }
 
 void claim_connected(const ExportedFrame& frame, Verdict* verdict) {
@@ -96,8 +98,9 @@ void claim_connected(const ExportedFrame& frame, Verdict* verdict) {
   }
   std::size_t lost = 0;
   for (const bool r : reached) lost += r ? 0 : 1;
-  verdict->claims.push_back({"every node stands on the base", lost == 0,
-                             fmt::format("{} of {} nodes have no path of struts to a support", lost, reached.size())});
+  verdict->claims.push_back(
+      {"every node stands on the base", lost == 0,
+       fmt::format("{} of {} nodes have no path of struts to a support", lost, reached.size())});
 }
 
 void claim_volumes(const ExportedPrinter& result, Verdict* verdict) {
@@ -112,11 +115,12 @@ void claim_volumes(const ExportedPrinter& result, Verdict* verdict) {
            std::abs(total / result.solid_volume_mm3 - result.ratio) <= 1e-6 &&
            static_cast<int>(result.frame.nodes_mm.size()) == result.final_nodes &&
            static_cast<int>(result.frame.struts.size()) == result.final_struts,
-       fmt::format("{} nodes, {} struts, frame {:.1f} mm3 (reported {}, {}, {:.1f}), total {:.1f} mm3, ratio {:.4f} "
-                   "(reported {:.1f}, {:.4f})",
-                   result.frame.nodes_mm.size(), result.frame.struts.size(), volume, result.final_nodes,
-                   result.final_struts, result.frame_volume_mm3, total, total / result.solid_volume_mm3,
-                   result.total_volume_mm3, result.ratio)});
+       fmt::format(
+           "{} nodes, {} struts, frame {:.1f} mm3 (reported {}, {}, {:.1f}), total {:.1f} mm3, ratio {:.4f} "
+           "(reported {:.1f}, {:.4f})",
+           result.frame.nodes_mm.size(), result.frame.struts.size(), volume, result.final_nodes,
+           result.final_struts, result.frame_volume_mm3, total, total / result.solid_volume_mm3,
+           result.total_volume_mm3, result.ratio)});
   if (!result.optimised() || result.infeasible()) return;
   const double slack = 1 + 1e-6;
   verdict->claims.push_back(
@@ -127,9 +131,9 @@ void claim_volumes(const ExportedPrinter& result, Verdict* verdict) {
        fmt::format("size {:.1f}, topology {:.1f}, geometry {:.1f} mm3", result.size_volume_mm3,
                    result.topology_volume_mm3, result.geometry_volume_mm3)});
   if (result.lower_bound_mm3)
-    verdict->claims.push_back({"lower bound below the sized volume", *result.lower_bound_mm3 <= result.size_volume_mm3 * slack,
-                               fmt::format("bound {:.1f} mm3, size {:.1f} mm3", *result.lower_bound_mm3,
-                                           result.size_volume_mm3)});
+    verdict->claims.push_back(
+        {"lower bound below the sized volume", *result.lower_bound_mm3 <= result.size_volume_mm3 * slack,
+         fmt::format("bound {:.1f} mm3, size {:.1f} mm3", *result.lower_bound_mm3, result.size_volume_mm3)});
 }
 
 void claim_inside(const ExportedPrinter& result, const Surface& outer, Verdict* verdict) {
@@ -146,7 +150,8 @@ void claim_inside(const ExportedPrinter& result, const Surface& outer, Verdict* 
     const Eigen::Vector3d &a = frame.nodes_mm[s.a], &b = frame.nodes_mm[s.b];
     const int steps = s.skin ? 4 : std::max(4, static_cast<int>(std::ceil((b - a).norm())));
     double least = std::numeric_limits<double>::infinity();
-    for (int k = 0; k <= steps; ++k) least = std::min(least, outer.depth_mm(a + (b - a) * (double(k) / steps)));
+    for (int k = 0; k <= steps; ++k)
+      least = std::min(least, outer.depth_mm(a + (b - a) * (double(k) / steps)));
     if (s.skin) {
       ++skin;
       if (least < 0) ++leaving;
@@ -161,15 +166,19 @@ void claim_inside(const ExportedPrinter& result, const Surface& outer, Verdict* 
   }
   const double wanted = result.skin_thickness_mm - tolerance;
   verdict->claims.push_back(
-      {"internal struts inside the skin", (internal == 0 || worst_internal >= wanted) && (bridges == 0 || worst_bridge > 0),
+      {"internal struts inside the skin",
+       (internal == 0 || worst_internal >= wanted) && (bridges == 0 || worst_bridge > 0),
        internal + bridges == 0
            ? std::string("there are none")
-           : fmt::format("{} struts, the shallowest axis {:.3f} mm below the surface (at least {:.3f}); {} struts between "
-                         "skin nodes{}",
-                         internal, internal == 0 ? 0.0 : worst_internal, wanted, bridges,
-                         bridges == 0 ? "" : fmt::format(", shallowest {:.3f} mm (more than 0)", worst_bridge))});
+           : fmt::format(
+                 "{} struts, the shallowest axis {:.3f} mm below the surface (at least {:.3f}); {} struts "
+                 "between "
+                 "skin nodes{}",
+                 internal, internal == 0 ? 0.0 : worst_internal, wanted, bridges,
+                 bridges == 0 ? "" : fmt::format(", shallowest {:.3f} mm (more than 0)", worst_bridge))});
   verdict->notes.push_back(
-      fmt::format("{} of {} skin struts leave the object between their nodes, by {:.2f} mm at most; what leaves is not printed",
+      fmt::format("{} of {} skin struts leave the object between their nodes, by {:.2f} mm at most; what "
+                  "leaves is not printed",
                   leaving, skin, furthest_out));
 }
 

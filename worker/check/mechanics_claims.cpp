@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The paper's model, assembled here once more from its equations (1)-(3): a strut of area A and length l resists the
-// relative displacement of its ends by gamma A / l along its axis and mu A / l across it.
+// The paper's model, assembled here once more from its equations (1)-(3): a strut of area A and length l
+// resists the relative displacement of its ends by gamma A / l along its axis and mu A / l across it.
+#include <fmt/format.h>
 #include <Eigen/Sparse>
 #include <Eigen/SparseCholesky>
-#include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
@@ -13,8 +13,9 @@
 namespace skinframe::check {
 namespace {
 
-constexpr double kGravity = 9810.0;           // mm/s2
-constexpr double kForceTolerance = 1e-4;      // of the largest nodal force: the residual of the exported displacements
+constexpr double kGravity = 9810.0;  // mm/s2
+constexpr double kForceTolerance =
+    1e-4;  // of the largest nodal force: the residual of the exported displacements
 constexpr double kDisplacementTolerance = 1e-4;  // relative, reported against recomputed
 constexpr double kLimitTolerance = 1e-4;         // relative, on displacement and stress limits
 
@@ -32,9 +33,9 @@ Assembled assemble(const ExportedFrame& frame) {
     const Eigen::Vector3d e = frame.nodes_mm[s.b] - frame.nodes_mm[s.a];
     const double l = e.norm(), area = std::numbers::pi * s.radius_mm * s.radius_mm;
     const Eigen::Matrix3d along = e * e.transpose() / (l * l);
-    const Eigen::Matrix3d k = area / l *
-                              (frame.tensile_modulus_mpa * along +
-                               frame.shear_modulus_mpa * (Eigen::Matrix3d::Identity() - along));
+    const Eigen::Matrix3d k =
+        area / l *
+        (frame.tensile_modulus_mpa * along + frame.shear_modulus_mpa * (Eigen::Matrix3d::Identity() - along));
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j) {
         entries.emplace_back(3 * s.a + i, 3 * s.a + j, k(i, j));
@@ -49,7 +50,8 @@ Assembled assemble(const ExportedFrame& frame) {
   return out;
 }
 
-Eigen::VectorXd loads(const ExportedFrame& frame, const Assembled& assembled, const ExportedLoadCase& load_case) {
+Eigen::VectorXd loads(const ExportedFrame& frame, const Assembled& assembled,
+                      const ExportedLoadCase& load_case) {
   const int n = static_cast<int>(frame.nodes_mm.size());
   Eigen::VectorXd force(3 * n);
   for (int i = 0; i < n; ++i) {
@@ -72,7 +74,8 @@ Ratios stress_ratios(const ExportedFrame& frame, const Eigen::VectorXd& d) {
     const double stretch = e.dot(delta) / l;
     const double slip = (delta - stretch * e / l).norm();
     if (frame.tensile_strength_mpa)
-      worst.axial = std::max(worst.axial, frame.tensile_modulus_mpa * std::abs(stretch) / l / *frame.tensile_strength_mpa);
+      worst.axial = std::max(worst.axial,
+                             frame.tensile_modulus_mpa * std::abs(stretch) / l / *frame.tensile_strength_mpa);
     if (frame.shear_strength_mpa)
       worst.shear = std::max(worst.shear, frame.shear_modulus_mpa * slip / l / *frame.shear_strength_mpa);
   }
@@ -94,7 +97,8 @@ void claim_violation(const ExportedPrinter& result, bool stable, bool displaced,
                      Verdict* verdict) {
   const std::string& name = result.violated_constraint;
   if (name == "balance of the printed mesh") {
-    verdict->notes.push_back("infeasible by the balance of the printed mesh, which is not exported: not judged");
+    verdict->notes.push_back(
+        "infeasible by the balance of the printed mesh, which is not exported: not judged");
     return;
   }
   bool broken = false;
@@ -124,7 +128,8 @@ void claim_mechanics(const ExportedPrinter& result, Verdict* verdict) {
   std::vector<Eigen::Triplet<double>> kept;
   for (int c = 0; c < assembled.stiffness.outerSize(); ++c)
     for (Eigen::SparseMatrix<double>::InnerIterator it(assembled.stiffness, c); it; ++it)
-      if (place[it.row()] >= 0 && place[it.col()] >= 0) kept.emplace_back(place[it.row()], place[it.col()], it.value());
+      if (place[it.row()] >= 0 && place[it.col()] >= 0)
+        kept.emplace_back(place[it.row()], place[it.col()], it.value());
   Eigen::SparseMatrix<double> reduced(free_axis.size(), free_axis.size());
   reduced.setFromTriplets(kept.begin(), kept.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(reduced);
@@ -140,7 +145,8 @@ void claim_mechanics(const ExportedPrinter& result, Verdict* verdict) {
     if (static_cast<int>(load_case.displacement_mm.size()) == n) {
       for (int i = 0; i < n; ++i) d.segment<3>(3 * i) = load_case.displacement_mm[i];
       const Eigen::VectorXd residual = assembled.stiffness * d - force;
-      for (const int i : free_axis) worst_residual = std::max(worst_residual, std::abs(residual[i]) / force.cwiseAbs().maxCoeff());
+      for (const int i : free_axis)
+        worst_residual = std::max(worst_residual, std::abs(residual[i]) / force.cwiseAbs().maxCoeff());
     } else {
       exported_all = false;
     }
@@ -162,30 +168,34 @@ void claim_mechanics(const ExportedPrinter& result, Verdict* verdict) {
 
   verdict->claims.push_back(
       {"equilibrium (paper model)", stable && exported_all && worst_residual <= kForceTolerance,
-       fmt::format("exported displacements leave {:.1e} of the largest nodal force (at most {:.0e}); stiffness {}",
-                   worst_residual, kForceTolerance, stable ? "positive definite" : "not positive definite")});
+       fmt::format(
+           "exported displacements leave {:.1e} of the largest nodal force (at most {:.0e}); stiffness {}",
+           worst_residual, kForceTolerance, stable ? "positive definite" : "not positive definite")});
   const double limit = frame.displacement_limit_mm.value_or(std::numeric_limits<double>::infinity());
   const bool honest = close(worst_displacement, result.max_displacement_mm, kDisplacementTolerance);
   if (result.infeasible()) {
     const bool same = !result.best_reachable_displacement_mm ||
                       close(worst_displacement, *result.best_reachable_displacement_mm, 1e-2);
-    verdict->claims.push_back({"best reachable displacement (paper model)", honest && same,
-                               fmt::format("{:.5f} mm in load case \"{}\", reported {:.5f} mm; limit {:g} mm", worst_displacement,
-                                           worst_case, result.max_displacement_mm, limit)});
+    verdict->claims.push_back(
+        {"best reachable displacement (paper model)", honest && same,
+         fmt::format("{:.5f} mm in load case \"{}\", reported {:.5f} mm; limit {:g} mm", worst_displacement,
+                     worst_case, result.max_displacement_mm, limit)});
     claim_violation(result, stable, worst_displacement > limit, worst.axial > 1, worst.shear > 1, verdict);
     return;
   }
   verdict->claims.push_back(
       {"displacement (paper model)",
        stable && honest && (!result.optimised() || worst_displacement <= limit * (1 + kLimitTolerance)),
-       fmt::format("{:.6f} mm in load case \"{}\", reported {:.6f} mm, limit {:g} mm{}", worst_displacement, worst_case,
-                   result.max_displacement_mm, limit, result.optimised() ? "" : " (not optimised: no limit claimed)")});
+       fmt::format("{:.6f} mm in load case \"{}\", reported {:.6f} mm, limit {:g} mm{}", worst_displacement,
+                   worst_case, result.max_displacement_mm, limit,
+                   result.optimised() ? "" : " (not optimised: no limit claimed)")});
   verdict->claims.push_back(
       {"stresses (paper model)",
-       stable && close(worst.axial, result.max_axial_ratio, 1e-3) && close(worst.shear, result.max_shear_ratio, 1e-3) &&
+       stable && close(worst.axial, result.max_axial_ratio, 1e-3) &&
+           close(worst.shear, result.max_shear_ratio, 1e-3) &&
            (!result.optimised() || std::max(worst.axial, worst.shear) <= 1 + kLimitTolerance),
-       fmt::format("axial {:.4f} and shear {:.4f} of strength (reported {:.4f}, {:.4f}), at most 1", worst.axial, worst.shear,
-                   result.max_axial_ratio, result.max_shear_ratio)});
+       fmt::format("axial {:.4f} and shear {:.4f} of strength (reported {:.4f}, {:.4f}), at most 1",
+                   worst.axial, worst.shear, result.max_axial_ratio, result.max_shear_ratio)});
 }
 
 }  // namespace skinframe::check

@@ -57,14 +57,15 @@ bool near(double measured, double reported, double relative) {
   return std::abs(measured - reported) <= relative * std::max(std::abs(measured), std::abs(reported));
 }
 
-// Share of M that lies within the skin's thickness of its surface, from points spread evenly over its box. The error is
-// the binomial one of the count of points inside.
+// Share of M that lies within the skin's thickness of its surface, from points spread evenly over its box.
+// The error is the binomial one of the count of points inside.
 struct SkinSample {
   double volume_mm3 = 0;
   double error_mm3 = 0;  // four standard deviations
 };
 
-SkinSample sample_skin_volume(const Surface& outer, const BoundingBox& box, double thickness_mm, double solid_volume_mm3) {
+SkinSample sample_skin_volume(const Surface& outer, const BoundingBox& box, double thickness_mm,
+                              double solid_volume_mm3) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   constexpr int kInside = 20000, kTries = 2000000;
@@ -96,30 +97,34 @@ void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, c
   const EdgeCount edges = count_edges(merged);
   verdict->claims.push_back(
       {"watertight", !merged.triangles.empty() && edges.unmatched + edges.crowded + edges.degenerate == 0,
-       fmt::format("{} triangles, {} edges without their opposite, {} with more than two triangles, {} collapsed triangles",
+       fmt::format("{} triangles, {} edges without their opposite, {} with more than two triangles, {} "
+                   "collapsed triangles",
                    merged.triangles.size(), edges.unmatched, edges.crowded, edges.degenerate)});
 
   const double solid = signed_volume(outer_mesh);
-  verdict->claims.push_back({"outer surface is the solid", near(solid, result.solid_volume_mm3, 1e-4),
-                             fmt::format("{:.1f} mm3 inside the first {} triangles, reported solid {:.1f} mm3", solid,
-                                         outer_mesh.triangles.size(), result.solid_volume_mm3)});
+  verdict->claims.push_back(
+      {"outer surface is the solid", near(solid, result.solid_volume_mm3, 1e-4),
+       fmt::format("{:.1f} mm3 inside the first {} triangles, reported solid {:.1f} mm3", solid,
+                   outer_mesh.triangles.size(), result.solid_volume_mm3)});
 
   const double printed = signed_volume(merged);
-  verdict->claims.push_back({"printed volume", near(printed, result.printed_volume_mm3, 1e-4) && printed > 0,
-                             fmt::format("{:.1f} mm3, reported {:.1f} mm3", printed, result.printed_volume_mm3)});
+  verdict->claims.push_back(
+      {"printed volume", near(printed, result.printed_volume_mm3, 1e-4) && printed > 0,
+       fmt::format("{:.1f} mm3, reported {:.1f} mm3", printed, result.printed_volume_mm3)});
   const double ratio = printed / solid;
   const double weight_g = printed * result.density_g_cm3 * 1e-3;
-  verdict->claims.push_back(
-      {"printed ratio and weight",
-       near(ratio, result.printed_ratio, 1e-3) && near(weight_g, result.weight_g, 1e-3) && ratio <= 1.0 + 1e-9,
-       fmt::format("{:.4f} and {:.3f} g, reported {:.4f} and {:.3f} g", ratio, weight_g, result.printed_ratio,
-                   result.weight_g)});
+  verdict->claims.push_back({"printed ratio and weight",
+                             near(ratio, result.printed_ratio, 1e-3) &&
+                                 near(weight_g, result.weight_g, 1e-3) && ratio <= 1.0 + 1e-9,
+                             fmt::format("{:.4f} and {:.3f} g, reported {:.4f} and {:.3f} g", ratio, weight_g,
+                                         result.printed_ratio, result.weight_g)});
 
   // The cavity is where M is deeper than the skin; the level set is exact to a fraction of its voxel.
   double shallowest = std::numeric_limits<double>::infinity();
   bool outside = false;
   for (std::size_t i = 0; i < cavity.vertices.size(); ++i) {
-    const double depth = i % 16 == 0 ? outer.depth_mm(cavity.vertices[i]) : outer.distance_mm(cavity.vertices[i]);
+    const double depth =
+        i % 16 == 0 ? outer.depth_mm(cavity.vertices[i]) : outer.distance_mm(cavity.vertices[i]);
     outside |= depth < 0;
     shallowest = std::min(shallowest, depth);
   }
@@ -127,28 +132,28 @@ void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, c
   if (cavity.triangles.empty()) {
     verdict->notes.push_back("the result has no cavity: it is solid");
   } else {
-    verdict->claims.push_back({"skin thickness", !outside && shallowest >= least,
-                               fmt::format("the cavity's nearest point is {:.3f} mm below the surface, at least {:.3f} mm "
-                                           "(skin {:.3f} mm less half a voxel of {:.3f} mm)",
-                                           shallowest, least, result.skin_thickness_mm, result.voxel_mm)});
+    verdict->claims.push_back(
+        {"skin thickness", !outside && shallowest >= least,
+         fmt::format("the cavity's nearest point is {:.3f} mm below the surface, at least {:.3f} mm "
+                     "(skin {:.3f} mm less half a voxel of {:.3f} mm)",
+                     shallowest, least, result.skin_thickness_mm, result.voxel_mm)});
   }
 
   const BoundingBox box = bounding_box(outer_mesh);
   const SkinSample skin = sample_skin_volume(outer, box, result.skin_thickness_mm, solid);
   const double allowed = skin.error_mm3 + 0.02 * skin.volume_mm3;
-  verdict->claims.push_back(
-      {"skin volume", std::abs(skin.volume_mm3 - result.skin_volume_mm3) <= allowed,
-       fmt::format("{:.0f} mm3 by sampling (+- {:.0f}), reported {:.0f} mm3", skin.volume_mm3, allowed,
-                   result.skin_volume_mm3)});
+  verdict->claims.push_back({"skin volume", std::abs(skin.volume_mm3 - result.skin_volume_mm3) <= allowed,
+                             fmt::format("{:.0f} mm3 by sampling (+- {:.0f}), reported {:.0f} mm3",
+                                         skin.volume_mm3, allowed, result.skin_volume_mm3)});
 
   const Eigen::Vector3d extent = box.extent();
   const Eigen::Vector3d tray = result.tray_mm;
   const bool upright = extent.z() <= tray.z() + 1e-6;
   const bool fits = upright && ((extent.x() <= tray.x() + 1e-6 && extent.y() <= tray.y() + 1e-6) ||
                                 (extent.y() <= tray.x() + 1e-6 && extent.x() <= tray.y() + 1e-6));
-  verdict->claims.push_back(
-      {"fits the tray", fits, fmt::format("{:.1f} x {:.1f} x {:.1f} mm on a tray of {:g} x {:g} x {:g} mm", extent.x(),
-                                          extent.y(), extent.z(), tray.x(), tray.y(), tray.z())});
+  verdict->claims.push_back({"fits the tray", fits,
+                             fmt::format("{:.1f} x {:.1f} x {:.1f} mm on a tray of {:g} x {:g} x {:g} mm",
+                                         extent.x(), extent.y(), extent.z(), tray.x(), tray.y(), tray.z())});
 }
 
 }  // namespace skinframe::check

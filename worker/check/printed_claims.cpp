@@ -11,7 +11,7 @@ namespace skinframe::check {
 void claim_printed_struts(const ExportedPrinter& result, const TriangleMesh& cavity, const Surface& outer,
                           Verdict* verdict) {
   if (cavity.triangles.empty()) return;  // all is solid
-  TriangleMesh outward = cavity;         // the cavity's boundary looks into the cavity; turned, it encloses it
+  TriangleMesh outward = cavity;  // the cavity's boundary looks into the cavity; turned, it encloses it
   for (auto& t : outward.triangles) std::swap(t[1], t[2]);
   const Surface hollow(outward);
 
@@ -37,11 +37,11 @@ void claim_printed_struts(const ExportedPrinter& result, const TriangleMesh& cav
     verdict->notes.push_back("no strut's axis runs below the skin: none could be looked for in the mesh");
     return;
   }
-  verdict->claims.push_back(
-      {"struts are printed", missing == 0,
-       fmt::format("{} of {} struts looked at are not solid about their axis to their radius less a voxel of {:.3f} mm; the "
-                   "thinnest is {:.2f} of its radius",
-                   missing, looked_at, result.voxel_mm, worst)});
+  verdict->claims.push_back({"struts are printed", missing == 0,
+                             fmt::format("{} of {} struts looked at are not solid about their axis to their "
+                                         "radius less a voxel of {:.3f} mm; the "
+                                         "thinnest is {:.2f} of its radius",
+                                         missing, looked_at, result.voxel_mm, worst)});
 }
 
 }  // namespace skinframe::check

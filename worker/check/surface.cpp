@@ -5,9 +5,9 @@
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Side_of_triangle_mesh.h>
 #include <CGAL/Surface_mesh.h>
-#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 
 #include <cmath>
 #include <optional>
@@ -48,7 +48,8 @@ double Surface::distance_mm(const Eigen::Vector3d& p) const {
 
 double Surface::depth_mm(const Eigen::Vector3d& p) const {
   const double distance = distance_mm(p);
-  return (*impl_->side)(Kernel::Point_3(p.x(), p.y(), p.z())) == CGAL::ON_UNBOUNDED_SIDE ? -distance : distance;
+  return (*impl_->side)(Kernel::Point_3(p.x(), p.y(), p.z())) == CGAL::ON_UNBOUNDED_SIDE ? -distance
+                                                                                         : distance;
 }
 
 }  // namespace skinframe::check

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Distance to and side of a closed surface, by CGAL's tree of triangles: the check's own, apart from the level sets that
-// the export was made with.
+// Distance to and side of a closed surface, by CGAL's tree of triangles: the check's own, apart from the
+// level sets that the export was made with.
 #pragma once
 
 #include <Eigen/Core>

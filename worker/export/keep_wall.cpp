@@ -33,7 +33,8 @@ int keep_wall(TriangleMesh& cavity, const TriangleMesh& closed_mesh, const Skin&
 
   int moved = 0;
   for (Eigen::Vector3d& vertex : cavity.vertices) {
-    // The field is never too shallow by more than its voxel: what it sees deeper is a strut's, not the wall's.
+    // The field is never too shallow by more than its voxel: what it sees deeper is a strut's, not the
+    // wall's.
     if (-skin.field.at(vertex) > skin.thickness_mm + voxel_mm) continue;
     const Kernel::Point_3 nearest = tree.closest_point(point(vertex));
     const Eigen::Vector3d foot(nearest.x(), nearest.y(), nearest.z());

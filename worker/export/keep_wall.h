@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The wall between M and the cavity is nowhere thinner than the skin asks for. The level set alone does not see to that:
-// OpenVDB hands the nearest triangle on from voxel to voxel and misses it now and then by a fifth of a millimetre, always
-// towards too deep; interpolation and thinning cut corners where M is concave.
+// The wall between M and the cavity is nowhere thinner than the skin asks for. The level set alone does not
+// see to that: OpenVDB hands the nearest triangle on from voxel to voxel and misses it now and then by a
+// fifth of a millimetre, always towards too deep; interpolation and thinning cut corners where M is concave.
 #pragma once
 
 #include "worker/mesh/triangle_mesh.h"
@@ -9,8 +9,9 @@
 
 namespace skinframe {
 
-// Vertices of the cavity that stand nearer to M than the skin's thickness less kWallSlackInVoxels, by exact distance, go
-// back to that thickness, away from their nearest point of M. Coordinates stay exact floats. Returns how many moved.
+// Vertices of the cavity that stand nearer to M than the skin's thickness less kWallSlackInVoxels, by exact
+// distance, go back to that thickness, away from their nearest point of M. Coordinates stay exact floats.
+// Returns how many moved.
 inline constexpr double kWallSlackInVoxels = 0.1;
 int keep_wall(TriangleMesh& cavity, const TriangleMesh& closed_mesh, const Skin& skin, double voxel_mm);
 

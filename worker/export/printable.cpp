@@ -27,7 +27,7 @@ constexpr double kBandVoxels = 3.0;
 constexpr double kMaxSurfaceSquares = 3e6;  // as in build_skin.cpp: some 600 MB while the grid is made
 constexpr double kFlatBandVoxels = 8.0;     // of the band beside the skin's own depth
 constexpr double kMaxBandVoxels = 3e6 * 24;
-constexpr double kVoxelInRadii = 0.6;       // of the thinnest strut
+constexpr double kVoxelInRadii = 0.6;  // of the thinnest strut
 // Of the thinning: a sum over planes, so the surface itself stays much nearer.
 constexpr double kThinningInVoxels = 0.3;
 
@@ -35,17 +35,18 @@ Result<double> choose_voxel(const ExportOptions& options, const Skin& skin,
                             const std::vector<double>& radii_mm, double area_mm2) {
   // The band about M is deeper, in voxels, the smaller they are; its volume is what memory is taken for.
   double least = std::sqrt(area_mm2 / kMaxSurfaceSquares);
-  while (area_mm2 / (least * least) * (skin.thickness_mm / least + kFlatBandVoxels) > kMaxBandVoxels) least *= 1.05;
+  while (area_mm2 / (least * least) * (skin.thickness_mm / least + kFlatBandVoxels) > kMaxBandVoxels)
+    least *= 1.05;
   double thinnest = 0.5 * skin.thickness_mm;
   if (!radii_mm.empty()) thinnest = *std::min_element(radii_mm.begin(), radii_mm.end());
   // A coarser grid than that breaks struts into beads.
   const double most = std::max(least, kVoxelInRadii * thinnest);
   const double voxel = options.voxel_mm.value_or(most);
   if (voxel < least * (1.0 - 1e-9) || voxel > most * (1.0 + 1e-9) || least > skin.thickness_mm) {
-    return invalid_input(
-        fmt::format("an export grid of {:.3g} mm on a surface of {:.0f} mm2 with struts of radius {:.3g} mm: use a "
-                    "--voxel between {:.3g} and {:.3g} mm{}",
-                    voxel, area_mm2, thinnest, least, most, voxel < most ? " or a smaller --size" : ""));
+    return invalid_input(fmt::format(
+        "an export grid of {:.3g} mm on a surface of {:.0f} mm2 with struts of radius {:.3g} mm: use a "
+        "--voxel between {:.3g} and {:.3g} mm{}",
+        voxel, area_mm2, thinnest, least, most, voxel < most ? " or a smaller --size" : ""));
   }
   return voxel;
 }

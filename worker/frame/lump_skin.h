@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The skin's weight as the mechanics sees it: its volume shared out to the skin nodes by a third of the area of each
-// triangle about them, scaled so that the sum is Skin::volume_mm3 exactly (Wang et al. 2013, section 3).
+// The skin's weight as the mechanics sees it: its volume shared out to the skin nodes by a third of the area
+// of each triangle about them, scaled so that the sum is Skin::volume_mm3 exactly (Wang et al. 2013, section
+// 3).
 #pragma once
 
 #include <vector>

@@ -26,11 +26,11 @@ using Primitive = CGAL::AABB_face_graph_triangle_primitive<HalfEdgeMesh>;
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
 constexpr int kRounds = 60;
-constexpr int kRoundsBeforeRim = 10;     // first even, then on the rim
-constexpr double kOntoRim = 0.35;        // in wanted edges: any node this near to the rim goes onto it
+constexpr int kRoundsBeforeRim = 10;      // first even, then on the rim
+constexpr double kOntoRim = 0.35;         // in wanted edges: any node this near to the rim goes onto it
 constexpr double kCrowdsNeighbour = 0.3;  // in wanted edges
-constexpr double kCrowdsPin = 0.6;       // in wanted edges
-constexpr double kContactOntoRim = 0.6;  // the contact's outermost nodes come from further
+constexpr double kCrowdsPin = 0.6;        // in wanted edges
+constexpr double kContactOntoRim = 0.6;   // the contact's outermost nodes come from further
 
 // The rim of the base contact: where edges of M1 cross its height.
 std::vector<Eigen::Vector3d> rim_points(const HalfEdgeMesh& mesh, double contact_z) {

@@ -8,18 +8,26 @@ namespace {
 
 using nlohmann::json;
 
-// Share of a printer's time that is behind when a stage begins: medians of runs on 200 mm bodies. Only the estimate of
-// the time left rests on it.
+// Share of a printer's time that is behind when a stage begins: medians of runs on 200 mm bodies. Only the
+// estimate of the time left rests on it.
 double share_behind(Stage stage) {
   switch (stage) {
-    case Stage::kRead: return 0.0;
-    case Stage::kRepair: return 0.02;
-    case Stage::kSkin: return 0.05;
-    case Stage::kSample: return 0.2;
-    case Stage::kSize: return 0.4;
-    case Stage::kTopology: return 0.5;
-    case Stage::kGeometry: return 0.6;
-    case Stage::kExport: return 0.75;
+    case Stage::kRead:
+      return 0.0;
+    case Stage::kRepair:
+      return 0.02;
+    case Stage::kSkin:
+      return 0.05;
+    case Stage::kSample:
+      return 0.2;
+    case Stage::kSize:
+      return 0.4;
+    case Stage::kTopology:
+      return 0.5;
+    case Stage::kGeometry:
+      return 0.6;
+    case Stage::kExport:
+      return 0.75;
   }
   return 0.0;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The job's side of the pipe: one JSON object a line, as README.md of this folder gives it. Ticks are thinned to one
-// every kTickSeconds; a change of stage, and everything that is not a tick, goes at once. A beat repeats the last tick
-// while a stage is silent, so that a line comes at least every 500 ms.
+// The job's side of the pipe: one JSON object a line, as README.md of this folder gives it. Ticks are thinned
+// to one every kTickSeconds; a change of stage, and everything that is not a tick, goes at once. A beat
+// repeats the last tick while a stage is silent, so that a line comes at least every 500 ms.
 #pragma once
 
 #include <chrono>

@@ -24,11 +24,14 @@ double number(const json& object, const char* key, double least, double most) {
   const json& value = object.at(key);
   if (!value.is_number()) refuse(fmt::format("{} is not a number", key));
   const double x = value.get<double>();
-  if (!(std::isfinite(x) && x >= least && x <= most)) refuse(fmt::format("{} is {:g}, outside {:g} .. {:g}", key, x, least, most));
+  if (!(std::isfinite(x) && x >= least && x <= most))
+    refuse(fmt::format("{} is {:g}, outside {:g} .. {:g}", key, x, least, most));
   return x;
 }
 
-bool is_given(const json& object, const char* key) { return object.contains(key) && !object.at(key).is_null(); }
+bool is_given(const json& object, const char* key) {
+  return object.contains(key) && !object.at(key).is_null();
+}
 
 std::optional<double> optional_number(const json& object, const char* key, double least, double most) {
   if (!is_given(object, key)) return std::nullopt;
@@ -45,7 +48,8 @@ Eigen::Vector3d vector3(const json& value, const std::string& place) {
   if (!value.is_array() || value.size() != 3) refuse(place + " is not [x, y, z]");
   Eigen::Vector3d v;
   for (int i = 0; i < 3; ++i) {
-    if (!value[i].is_number() || !std::isfinite(value[i].get<double>())) refuse(place + " holds something that is not a number");
+    if (!value[i].is_number() || !std::isfinite(value[i].get<double>()))
+      refuse(place + " holds something that is not a number");
     v[i] = value[i].get<double>();
   }
   return v;
@@ -63,9 +67,10 @@ PrinterRequest parse_printer(const json& item) {
   PrinterRequest request;
   const json& printer = item.at("printer");
   request.printer.id = printer.at("id").get<std::string>();
-  request.printer.process = choice<PrintProcess>(
-      printer, "process",
-      {{"powder", PrintProcess::kPowder}, {"extrusion", PrintProcess::kExtrusion}, {"resin", PrintProcess::kResin}});
+  request.printer.process = choice<PrintProcess>(printer, "process",
+                                                 {{"powder", PrintProcess::kPowder},
+                                                  {"extrusion", PrintProcess::kExtrusion},
+                                                  {"resin", PrintProcess::kResin}});
   request.printer.min_radius_mm = number(printer, "min_radius_mm", 0.01, 50);
   request.printer.tray_mm = vector3(printer.at("tray_mm"), "tray_mm");
   request.printer.max_internal_radius_mm =
@@ -81,7 +86,8 @@ PrinterRequest parse_printer(const json& item) {
   request.price_per_kg = optional_number(material, "price_per_kg", 0, 1e9);
   // The id names a folder of the result.
   for (const std::string& id : {request.printer.id, request.material.id})
-    if (id.empty() || id.size() > 64 || id.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") != std::string::npos)
+    if (id.empty() || id.size() > 64 ||
+        id.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") != std::string::npos)
       refuse(fmt::format("id \"{}\" is not of [a-z0-9-]", id));
   return request;
 }
@@ -108,13 +114,15 @@ JobOptions parse_options(const json& item) {
   JobOptions options;
   options.up = choice<Up>(item, "up", {{"x", Up::kX}, {"y", Up::kY}, {"z", Up::kZ}});
   options.balance = choice<BalanceMode>(
-      item, "balance", {{"auto", BalanceMode::kAuto}, {"require", BalanceMode::kRequire}, {"off", BalanceMode::kOff}});
+      item, "balance",
+      {{"auto", BalanceMode::kAuto}, {"require", BalanceMode::kRequire}, {"off", BalanceMode::kOff}});
   options.size_mm = optional_number(item, "size_mm", 1, 2000);
   options.skin_nodes = optional_count(item, "skin_nodes", 12, 20000);
   options.internal_nodes = optional_count(item, "internal_nodes", 0, 20000);
   options.voxel_mm = optional_number(item, "voxel_mm", 0.02, 5);
   options.no_optimize = item.at("no_optimize").get<bool>();
-  options.order = choice<StageOrder>(item, "order", {{"tight", StageOrder::kTight}, {"paper", StageOrder::kPaper}});
+  options.order =
+      choice<StageOrder>(item, "order", {{"tight", StageOrder::kTight}, {"paper", StageOrder::kPaper}});
   options.displacement_limit_mm = number(item, "displacement_limit_mm", 1e-3, 100);
   options.seed = item.at("seed").get<std::uint64_t>();
   if (item.at("smooth").get<std::string>() == "on")
@@ -150,7 +158,8 @@ Result<JobFile> read_job(const std::filesystem::path& path) {
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   if (error) return io_error(fmt::format("{}: {}", path.string(), error.message()));
-  if (size > kMaxJobFileBytes) return invalid_input(fmt::format("{}: {} bytes are too many", path.string(), size));
+  if (size > kMaxJobFileBytes)
+    return invalid_input(fmt::format("{}: {} bytes are too many", path.string(), size));
   std::ifstream in(path);
   const json document = json::parse(in, nullptr, false);
   if (document.is_discarded()) return invalid_input(fmt::format("{}: not JSON", path.string()));

@@ -26,9 +26,11 @@ json failed(Reason reason, const std::string& detail) {
           {"printers", json::array()}};
 }
 
-// One printer: its own ending. Several: SUCCEEDED when all are done, PARTIAL when some are, else the first one's reason.
+// One printer: its own ending. Several: SUCCEEDED when all are done, PARTIAL when some are, else the first
+// one's reason.
 json outcome_of(const std::vector<PrinterOutcome>& printers) {
-  const auto done = std::count_if(printers.begin(), printers.end(), [](const auto& p) { return p.succeeded(); });
+  const auto done =
+      std::count_if(printers.begin(), printers.end(), [](const auto& p) { return p.succeeded(); });
   json out = {{"state", done > 0 ? "SUCCEEDED" : "FAILED"}, {"printers", json::array()}};
   const auto first_failed =
       std::find_if(printers.begin(), printers.end(), [](const auto& p) { return !p.succeeded(); });
@@ -57,7 +59,8 @@ json work(const JobFile& file, const std::filesystem::path& out_dir, std::stop_t
     if (!outcomes) return failed(reason_of(outcomes.error().kind), outcomes.error().message);
     return outcome_of(*outcomes);
   } catch (const std::bad_alloc&) {
-    return failed(Reason::kOutOfMemory, "the job needed more memory than it may take; use fewer nodes or a larger --voxel");
+    return failed(Reason::kOutOfMemory,
+                  "the job needed more memory than it may take; use fewer nodes or a larger --voxel");
   } catch (const std::exception& error) {
     return failed(Reason::kInternal, std::string("unexpected: ") + error.what());
   }
@@ -78,7 +81,8 @@ int run_job(const std::filesystem::path& work_dir) {
   if (!file) {
     outcome = failed(reason_of(file.error().kind), file.error().message);
   } else {
-    spdlog::info("job={} mesh={} printers={}", file->request.job_id, file->request.mesh_name, file->request.printers.size());
+    spdlog::info("job={} mesh={} printers={}", file->request.job_id, file->request.mesh_name,
+                 file->request.printers.size());
     outcome = work(*file, work_dir / "out", stop.get_token());
     spdlog::info("job={} ended state={} reason={}", file->request.job_id, outcome["state"].get<std::string>(),
                  outcome["reason"].get<std::string>());

@@ -14,7 +14,6 @@
 namespace skinframe {
 namespace {
 
-
 // Upright, and turned by 90 degrees about z if that helps.
 Status fits_tray(const Solid& solid, const PrinterProfile& printer) {
   const Eigen::Vector3d size = solid.box().extent();
@@ -22,11 +21,13 @@ Status fits_tray(const Solid& solid, const PrinterProfile& printer) {
   if ((size.x() > size.y()) != (tray.x() > tray.y())) std::swap(tray.x(), tray.y());
   const Eigen::Vector3d excess = (size - tray).cwiseMax(0.0);
   if (excess.maxCoeff() <= 0) return ok_status();
-  return Error{ErrorKind::kDoesNotFit,
-               fmt::format("{:.1f} x {:.1f} x {:.1f} mm does not fit the tray of {} ({:g} x {:g} x {:g} mm) by {:.1f} mm; use "
-                           "a smaller --size",
-                           size.x(), size.y(), size.z(), printer.id, printer.tray_mm.x(), printer.tray_mm.y(),
-                           printer.tray_mm.z(), excess.maxCoeff())};
+  return Error{
+      ErrorKind::kDoesNotFit,
+      fmt::format(
+          "{:.1f} x {:.1f} x {:.1f} mm does not fit the tray of {} ({:g} x {:g} x {:g} mm) by {:.1f} mm; use "
+          "a smaller --size",
+          size.x(), size.y(), size.z(), printer.id, printer.tray_mm.x(), printer.tray_mm.y(),
+          printer.tray_mm.z(), excess.maxCoeff())};
 }
 
 std::vector<std::string> honest_warnings(const PrinterProfile& printer) {
@@ -56,9 +57,9 @@ PrinterReport begin_report(const PrinterRequest& request) {
 
 }  // namespace
 
-Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const PrinterRequest& request, const JobRequest& job,
-                                      const std::filesystem::path& out_dir, const PipelineObserver& observer,
-                                      RunContext& context) {
+Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const PrinterRequest& request,
+                                      const JobRequest& job, const std::filesystem::path& out_dir,
+                                      const PipelineObserver& observer, RunContext& context) {
   const PrinterProfile& printer = request.printer;
   if (auto fits = fits_tray(prepared.solid, printer); !fits) return fits.error();
   PrinterReport report = begin_report(request);
@@ -92,16 +93,19 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
     report.detail = "balance cannot hold: the base contact has no area; see --up and --balance";
     return report;
   }
-  auto posed = pose_problem(prepared.solid, prepared.contact, *skin, *sampled, request, job.loads, job.options);
+  auto posed =
+      pose_problem(prepared.solid, prepared.contact, *skin, *sampled, request, job.loads, job.options);
   if (!posed) return posed.error();
   report.warnings.insert(report.warnings.end(), posed->warnings.begin(), posed->warnings.end());
   if (balance == BalanceState::kNotStanding)
-    report.warnings.push_back(fmt::format(
-        "the solid does not stand on its lowest plane: its centre of gravity is {:.1f} mm outside the base contact, so "
-        "balance is not enforced (see --up and --balance)",
-        -prepared.contact.margin_mm));
+    report.warnings.push_back(
+        fmt::format("the solid does not stand on its lowest plane: its centre of gravity is {:.1f} mm "
+                    "outside the base contact, so "
+                    "balance is not enforced (see --up and --balance)",
+                    -prepared.contact.margin_mm));
 
-  auto merged = solve_and_merge({prepared, *skin, job.options, balance, laps}, std::move(posed.value().problem), &report, context);
+  auto merged = solve_and_merge({prepared, *skin, job.options, balance, laps},
+                                std::move(posed.value().problem), &report, context);
   if (!merged) return merged.error();
 
   const OptimizeResult& result = *report.optimised;

@@ -7,8 +7,9 @@
 
 namespace skinframe {
 
-// A report for every ending that is one of the work (done, infeasible); what was written, it tells. With kInfeasible the
-// folder holds frame.json alone: the best frame that was found. Errors: what could not be tried.
+// A report for every ending that is one of the work (done, infeasible); what was written, it tells. With
+// kInfeasible the folder holds frame.json alone: the best frame that was found. Errors: what could not be
+// tried.
 Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const PrinterRequest& printer,
                                       const JobRequest& request, const std::filesystem::path& out_dir,
                                       const PipelineObserver& observer, RunContext& context);

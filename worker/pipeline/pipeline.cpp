@@ -13,8 +13,10 @@ namespace skinframe {
 namespace {
 
 PrinterOutcome outcome_of(const PrinterReport& report) {
-  PrinterOutcome outcome{report.printer, report.material, report.reason, report.detail, std::nullopt, std::nullopt};
-  if (report.optimised) outcome.best_reachable_displacement_mm = report.optimised->best_reachable_displacement_mm;
+  PrinterOutcome outcome{report.printer, report.material, report.reason,
+                         report.detail,  std::nullopt,    std::nullopt};
+  if (report.optimised)
+    outcome.best_reachable_displacement_mm = report.optimised->best_reachable_displacement_mm;
   if (outcome.succeeded()) outcome.statistics = report.statistics;
   return outcome;
 }
@@ -37,7 +39,8 @@ Result<PrinterReport> make_or_run_out(const PreparedSolid& prepared, const Print
 
 }  // namespace
 
-Result<std::vector<PrinterOutcome>> run_pipeline(const JobRequest& request, const std::filesystem::path& out_dir,
+Result<std::vector<PrinterOutcome>> run_pipeline(const JobRequest& request,
+                                                 const std::filesystem::path& out_dir,
                                                  const PipelineObserver& observer, RunContext& context) {
   context.report = [&](const Progress& progress) { observer.progress({"", progress, {}, {}}); };
   auto prepared = prepare_solid(request, context);

@@ -4,7 +4,8 @@
 //   read -> place -> repair -> for each printer: skin -> sample -> pose -> optimise -> merge -> write
 //
 // Guarantees:
-//  1. out_dir holds files only as DESIGN names them: report.json, and a folder for each printer with a result.
+//  1. out_dir holds files only as DESIGN names them: report.json, and a folder for each printer with a
+//  result.
 //  2. A printer that is refused or fails does not sink the others; its outcome says why.
 //  3. Every figure in report.json is of what was written, or is named nominal.
 //
@@ -44,9 +45,10 @@ struct PipelineObserver {
   std::function<void(const PrinterOutcome&)> printer_ended = [](const PrinterOutcome&) {};
 };
 
-// One outcome a printer, in the request's order. Errors: what concerns all printers alike (the mesh, the disk),
-// and cancellation.
-Result<std::vector<PrinterOutcome>> run_pipeline(const JobRequest& request, const std::filesystem::path& out_dir,
+// One outcome a printer, in the request's order. Errors: what concerns all printers alike (the mesh, the
+// disk), and cancellation.
+Result<std::vector<PrinterOutcome>> run_pipeline(const JobRequest& request,
+                                                 const std::filesystem::path& out_dir,
                                                  const PipelineObserver& observer, RunContext& context);
 
 }  // namespace skinframe

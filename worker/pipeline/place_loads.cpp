@@ -12,18 +12,24 @@
 namespace skinframe {
 namespace {
 
-constexpr double kPlaceBandMm = 1.0;        // surface this near to the furthest point belongs to the place
-constexpr double kPatchCellMm = 1.0;        // a patch is summed over cells of about this size
+constexpr double kPlaceBandMm = 1.0;         // surface this near to the furthest point belongs to the place
+constexpr double kPatchCellMm = 1.0;         // a patch is summed over cells of about this size
 constexpr double kMaxDistanceToSkinMm = 10;  // beyond the patch's radius, from a given point to the skin
 
 Eigen::Vector3d direction_of(Place place) {
   switch (place) {
-    case Place::kTop: return {0, 0, 1};
-    case Place::kBottom: return {0, 0, -1};
-    case Place::kLeft: return {-1, 0, 0};
-    case Place::kRight: return {1, 0, 0};
-    case Place::kFront: return {0, -1, 0};
-    case Place::kBack: return {0, 1, 0};
+    case Place::kTop:
+      return {0, 0, 1};
+    case Place::kBottom:
+      return {0, 0, -1};
+    case Place::kLeft:
+      return {-1, 0, 0};
+    case Place::kRight:
+      return {1, 0, 0};
+    case Place::kFront:
+      return {0, -1, 0};
+    case Place::kBack:
+      return {0, 1, 0};
   }
   SKINFRAME_CHECK(false);
 }
@@ -34,7 +40,8 @@ struct Spot {
   double distance_mm = std::numeric_limits<double>::infinity();
 };
 
-// Nearest point of a triangle, by regions (Ericson, Real-Time Collision Detection, 5.1.5), as barycentric weights.
+// Nearest point of a triangle, by regions (Ericson, Real-Time Collision Detection, 5.1.5), as barycentric
+// weights.
 Eigen::Vector3d nearest_weights(const Eigen::Vector3d& p, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                 const Eigen::Vector3d& c) {
   const Eigen::Vector3d ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
@@ -61,7 +68,8 @@ Spot nearest_spot(const Frame& frame, const Eigen::Vector3d& point) {
   Spot best;
   for (std::size_t t = 0; t < frame.skin_triangles.size(); ++t) {
     const auto& tri = frame.skin_triangles[t];
-    const Eigen::Vector3d &a = frame.nodes_mm[tri[0]], &b = frame.nodes_mm[tri[1]], &c = frame.nodes_mm[tri[2]];
+    const Eigen::Vector3d &a = frame.nodes_mm[tri[0]], &b = frame.nodes_mm[tri[1]],
+                          &c = frame.nodes_mm[tri[2]];
     const Eigen::Vector3d w = nearest_weights(point, a, b, c);
     const double distance = (w[0] * a + w[1] * b + w[2] * c - point).norm();
     if (distance < best.distance_mm) best = {static_cast<int>(t), w, distance};
@@ -69,7 +77,8 @@ Spot nearest_spot(const Frame& frame, const Eigen::Vector3d& point) {
   return best;
 }
 
-void spread(const Load& load, const Eigen::Vector3d& centre, const Spot& nearest, const Frame& frame, LoadCase* out) {
+void spread(const Load& load, const Eigen::Vector3d& centre, const Spot& nearest, const Frame& frame,
+            LoadCase* out) {
   // Share of the patch's area that falls to each node. Cells are the k^2 congruent parts of a triangle.
   std::vector<std::pair<int, double>> shares;
   double area = 0;
@@ -100,7 +109,8 @@ void spread(const Load& load, const Eigen::Vector3d& centre, const Spot& nearest
     for (const auto& [node, weight] : shares) out->force_n[node] += load.force_n * (weight / area);
     return;
   }
-  // A patch smaller than a cell, or one that the chords of the skin pass by: the nearest point carries it all.
+  // A patch smaller than a cell, or one that the chords of the skin pass by: the nearest point carries it
+  // all.
   for (int c = 0; c < 3; ++c)
     out->force_n[frame.skin_triangles[nearest.triangle][c]] += load.force_n * nearest.weights[c];
 }
@@ -131,7 +141,8 @@ Eigen::Vector3d place_point_mm(const Solid& solid, Place place) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double area = 0;
   for (const auto& t : mesh.triangles) {
-    if (!inside(t[0]) || !inside(t[1]) || !inside(t[2]) || find(t[0]) != find(static_cast<int>(furthest))) continue;
+    if (!inside(t[0]) || !inside(t[1]) || !inside(t[2]) || find(t[0]) != find(static_cast<int>(furthest)))
+      continue;
     const Eigen::Vector3d &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
     const double w = (b - a).cross(c - a).norm();
     sum += w * (a + b + c) / 3;
@@ -152,16 +163,19 @@ Result<PlacedLoads> place_loads(const std::vector<Load>& loads, const Solid& sol
         at_place ? place_point_mm(solid, std::get<Place>(load.where)) : std::get<Eigen::Vector3d>(load.where);
     const Spot nearest = nearest_spot(frame, centre);
     if (at_place && nearest.distance_mm > load.radius_mm + kMaxDistanceToSkinMm)
-      placed.warnings.push_back(fmt::format(
-          "load \"{}\": the object is thinner than two skins where it acts, and the frame carries it {:.1f} mm away",
-          load.name, nearest.distance_mm));
+      placed.warnings.push_back(
+          fmt::format("load \"{}\": the object is thinner than two skins where it acts, and the frame "
+                      "carries it {:.1f} mm away",
+                      load.name, nearest.distance_mm));
     if (!at_place && nearest.distance_mm > load.radius_mm + kMaxDistanceToSkinMm)
-      return invalid_input(fmt::format(
-          "load \"{}\": the point ({:g}, {:g}, {:g}) is {:.1f} mm from the surface; the object stands on z = 0, centred in "
-          "x and y, and measures {:.1f} x {:.1f} x {:.1f} mm",
-          load.name, centre.x(), centre.y(), centre.z(), nearest.distance_mm, solid.box().extent().x(),
-          solid.box().extent().y(), solid.box().extent().z()));
-    auto it = std::find_if(cases.begin(), cases.end(), [&](const LoadCase& c) { return c.name == load.name; });
+      return invalid_input(
+          fmt::format("load \"{}\": the point ({:g}, {:g}, {:g}) is {:.1f} mm from the surface; the object "
+                      "stands on z = 0, centred in "
+                      "x and y, and measures {:.1f} x {:.1f} x {:.1f} mm",
+                      load.name, centre.x(), centre.y(), centre.z(), nearest.distance_mm,
+                      solid.box().extent().x(), solid.box().extent().y(), solid.box().extent().z()));
+    auto it =
+        std::find_if(cases.begin(), cases.end(), [&](const LoadCase& c) { return c.name == load.name; });
     if (it == cases.end()) it = cases.insert(cases.end(), empty_case(load.name));
     spread(load, centre, nearest, frame, &*it);
   }

@@ -42,29 +42,35 @@ std::vector<std::array<bool, 3>> hold_contact(const Frame& frame, const std::vec
 
 BalanceState decide_balance(BalanceMode mode, const Contact& contact) {
   switch (mode) {
-    case BalanceMode::kOff: return BalanceState::kOff;
-    case BalanceMode::kRequire: return BalanceState::kEnforced;
-    case BalanceMode::kAuto: return contact.stands ? BalanceState::kEnforced : BalanceState::kNotStanding;
+    case BalanceMode::kOff:
+      return BalanceState::kOff;
+    case BalanceMode::kRequire:
+      return BalanceState::kEnforced;
+    case BalanceMode::kAuto:
+      return contact.stands ? BalanceState::kEnforced : BalanceState::kNotStanding;
   }
   SKINFRAME_CHECK(false);
 }
 
-double balance_reserve_mm(const Contact& contact) { return std::clamp(0.5 * contact.margin_mm, 0.0, kBalanceReserveMm); }
+double balance_reserve_mm(const Contact& contact) {
+  return std::clamp(0.5 * contact.margin_mm, 0.0, kBalanceReserveMm);
+}
 
 std::vector<HalfPlane> balance_half_planes(const Polygon2& whole_hull, double reserve_mm) {
   const Polygon2 hull = inscribed_polygon(whole_hull, kMaxBalanceEdges);
   std::vector<HalfPlane> planes;
   for (std::size_t i = 0; i < hull.size(); ++i) {
     const Eigen::Vector2d edge = hull[(i + 1) % hull.size()] - hull[i];
-    const Eigen::Vector2d normal = Eigen::Vector2d(edge.y(), -edge.x()).normalized();  // outward of a counter-clockwise hull
+    const Eigen::Vector2d normal =
+        Eigen::Vector2d(edge.y(), -edge.x()).normalized();  // outward of a counter-clockwise hull
     planes.push_back({normal, normal.dot(hull[i]) - reserve_mm});
   }
   return planes;
 }
 
-Result<PosedProblem> pose_problem(const Solid& solid, const Contact& contact, const Skin& skin, const SampledFrame& sampled,
-                                  const PrinterRequest& request, const std::vector<Load>& loads,
-                                  const JobOptions& options) {
+Result<PosedProblem> pose_problem(const Solid& solid, const Contact& contact, const Skin& skin,
+                                  const SampledFrame& sampled, const PrinterRequest& request,
+                                  const std::vector<Load>& loads, const JobOptions& options) {
   FrameProblem problem;
   problem.element = ElementModel::kPaper;
   problem.material = request.material;
@@ -73,9 +79,11 @@ Result<PosedProblem> pose_problem(const Solid& solid, const Contact& contact, co
   const PrinterProfile& printer = request.printer;
   const std::vector<double> clearance_mm = strut_clearance_mm(sampled.frame, skin);
   for (std::size_t j = 0; j < sampled.frame.struts.size(); ++j) {
-    // What would stand out of M1 is not printed, so it must not be counted on: (7) bounds the radius beside (10).
-    const double upper = sampled.frame.struts[j].is_skin ? printer.skin_thickness_mm()
-                                                         : std::min(printer.max_internal_radius_mm, clearance_mm[j]);
+    // What would stand out of M1 is not printed, so it must not be counted on: (7) bounds the radius beside
+    // (10).
+    const double upper = sampled.frame.struts[j].is_skin
+                             ? printer.skin_thickness_mm()
+                             : std::min(printer.max_internal_radius_mm, clearance_mm[j]);
     problem.bounds.push_back({printer.min_radius_mm, std::max(upper, printer.min_radius_mm)});
   }
   problem.fixed = hold_contact(sampled.frame, sampled.contact_nodes, Supports::kLeast);
@@ -89,7 +97,8 @@ Result<PosedProblem> pose_problem(const Solid& solid, const Contact& contact, co
   if (decide_balance(options.balance, contact) == BalanceState::kEnforced)
     problem.balance = balance_half_planes(contact.hull, balance_reserve_mm(contact));
   problem.free_nodes.assign(sampled.frame.nodes_mm.size(), false);
-  for (std::size_t i = sampled.frame.skin_node_count; i < problem.free_nodes.size(); ++i) problem.free_nodes[i] = true;
+  for (std::size_t i = sampled.frame.skin_node_count; i < problem.free_nodes.size(); ++i)
+    problem.free_nodes[i] = true;
   if (auto valid = validate(problem); !valid) return valid.error();
   return PosedProblem{std::move(problem), std::move(placed.value().warnings)};
 }

@@ -12,7 +12,8 @@
 namespace skinframe {
 namespace {
 
-// Bodies outside these bounds are mistakes of unit: nothing in a tray is larger, nothing smaller has an inside.
+// Bodies outside these bounds are mistakes of unit: nothing in a tray is larger, nothing smaller has an
+// inside.
 constexpr double kMinEdgeMm = 1.0, kMaxEdgeMm = 2000.0;
 constexpr double kPlateToleranceMm = 1e-3;  // absolute: rounding to float of a body of that size
 
@@ -28,9 +29,10 @@ Result<PreparedSolid> prepare_solid(const JobRequest& request, RunContext& conte
   if (request.options.size_mm) mesh = scale_to_largest_edge(std::move(mesh), *request.options.size_mm);
   const double edge = bounding_box(mesh).extent().maxCoeff();
   if (!(edge >= kMinEdgeMm && edge <= kMaxEdgeMm))
-    return invalid_input(fmt::format(
-        "the largest edge of the bounding box is {:g} mm, outside {:g} .. {:g} mm; state the size wanted with --size",
-        edge, kMinEdgeMm, kMaxEdgeMm));
+    return invalid_input(
+        fmt::format("the largest edge of the bounding box is {:g} mm, outside {:g} .. {:g} mm; state the "
+                    "size wanted with --size",
+                    edge, kMinEdgeMm, kMaxEdgeMm));
   // Placed first: a solid's coordinates are floats, and moving it afterwards would round them a second time.
   mesh = put_on_plate(turn_up(std::move(mesh), request.options.up));
   auto repaired = repair(std::move(mesh), RepairOptions{}, context);

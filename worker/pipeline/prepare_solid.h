@@ -11,7 +11,7 @@
 namespace skinframe {
 
 struct PreparedSolid {
-  Solid solid;      // on the plate: lowest z is 0, centred in x and y, up is +z
+  Solid solid;  // on the plate: lowest z is 0, centred in x and y, up is +z
   Contact contact;
   MeshFacts facts;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a job asks for, as the pipeline takes it: a mesh file, printers with their materials, loads and options.
-// Nothing of the wire is here; worker/job reads it from job.json. Units: mm, N, MPa, g/cm3.
+// What a job asks for, as the pipeline takes it: a mesh file, printers with their materials, loads and
+// options. Nothing of the wire is here; worker/job reads it from job.json. Units: mm, N, MPa, g/cm3.
 #pragma once
 
 #include <Eigen/Core>
@@ -21,7 +21,7 @@ enum class PrintProcess { kPowder, kExtrusion, kResin };
 struct PrinterProfile {
   std::string id;
   PrintProcess process = PrintProcess::kPowder;
-  double min_radius_mm = 0;           // eta in Table 1; the skin is twice as thick
+  double min_radius_mm = 0;  // eta in Table 1; the skin is twice as thick
   Eigen::Vector3d tray_mm = Eigen::Vector3d::Zero();
   double max_internal_radius_mm = 5;  // upper bound of (10)
 
@@ -40,7 +40,8 @@ enum class Place { kTop, kBottom, kLeft, kRight, kFront, kBack };
 // One external force, spread over a round patch of the skin. Loads of one name act together as one load case.
 struct Load {
   std::string name;
-  std::variant<Place, Eigen::Vector3d> where = Place::kTop;  // a point: in the coordinates of the placed object
+  std::variant<Place, Eigen::Vector3d> where =
+      Place::kTop;  // a point: in the coordinates of the placed object
   Eigen::Vector3d force_n = Eigen::Vector3d::Zero();
   double radius_mm = 5;
 };
@@ -51,10 +52,10 @@ enum class StageOrder { kTight, kPaper };
 struct JobOptions {
   Up up = Up::kZ;
   BalanceMode balance = BalanceMode::kAuto;
-  std::optional<double> size_mm;      // largest edge of the bounding box; none: the file is in mm
+  std::optional<double> size_mm;  // largest edge of the bounding box; none: the file is in mm
   std::optional<int> skin_nodes, internal_nodes;
-  std::optional<double> voxel_mm;     // of the final solid
-  bool no_optimize = false;           // radii stay at their lower bounds
+  std::optional<double> voxel_mm;  // of the final solid
+  bool no_optimize = false;        // radii stay at their lower bounds
   StageOrder order = StageOrder::kTight;
   double displacement_limit_mm = 0.05;  // epsilon of (6)
   std::uint64_t seed = 1;

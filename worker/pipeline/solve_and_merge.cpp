@@ -12,10 +12,10 @@ namespace {
 // The constraint's name in the report when only the print, not the model, fails to stand.
 constexpr const char* kPrintedBalance = "balance of the printed mesh";
 
-
 OptimizeOptions optimize_options(const JobOptions& options, const Skin& skin) {
   OptimizeOptions out;
-  out.order = options.order == StageOrder::kPaper ? OptimizeOptions::Order::kPaper : OptimizeOptions::Order::kTight;
+  out.order =
+      options.order == StageOrder::kPaper ? OptimizeOptions::Order::kPaper : OptimizeOptions::Order::kTight;
   out.convex_regions = [&skin](const Frame& frame, const std::vector<double>& radii_mm) {
     return convex_regions(frame, radii_mm, skin);
   };
@@ -37,17 +37,20 @@ OptimizeResult at_lower_bounds(FrameProblem problem) {
   for (const CaseResponse& response : responses) result.displacements_mm.push_back(response.displacements_mm);
   result.evaluation = evaluate(result.problem, result.radii_mm, responses);
   const Frame& frame = result.problem.frame;
-  result.initial = result.size = result.topology = result.geometry = {static_cast<int>(frame.nodes_mm.size()),
-                                                                      static_cast<int>(frame.struts.size()),
-                                                                      result.evaluation.frame_volume_mm3};
+  result.initial = result.size = result.topology =
+      result.geometry = {static_cast<int>(frame.nodes_mm.size()), static_cast<int>(frame.struts.size()),
+                         result.evaluation.frame_volume_mm3};
   return result;
 }
 
 std::string termination_name(Termination termination) {
   switch (termination) {
-    case Termination::kOptimal: return "OPTIMAL";
-    case Termination::kInfeasible: return "INFEASIBLE";
-    case Termination::kIterationLimit: return "ITERATION_LIMIT";
+    case Termination::kOptimal:
+      return "OPTIMAL";
+    case Termination::kInfeasible:
+      return "INFEASIBLE";
+    case Termination::kIterationLimit:
+      return "ITERATION_LIMIT";
   }
   return "INTERNAL";
 }
@@ -70,16 +73,22 @@ void fill_statistics(const SolveSetting& setting, PrinterReport* report) {
         signed_margin_mm(prepared.contact.hull, result.evaluation.centre_of_gravity_mm.head<2>());
   switch (setting.balance) {
     case BalanceState::kEnforced:
-      s.balance = report->reason == Reason::kInfeasible || report->termination == "NOT_OPTIMIZED" ? "not_claimed" : "holds";
+      s.balance = report->reason == Reason::kInfeasible || report->termination == "NOT_OPTIMIZED"
+                      ? "not_claimed"
+                      : "holds";
       break;
-    case BalanceState::kNotStanding: s.balance = "not_standing"; break;
-    case BalanceState::kOff: s.balance = "off"; break;
+    case BalanceState::kNotStanding:
+      s.balance = "not_standing";
+      break;
+    case BalanceState::kOff:
+      s.balance = "off";
+      break;
   }
 }
 
 // Fills the report's optimiser part: the optimised frame, or the one at its lower bounds.
-Status solve_frame(const FrameProblem& problem, const JobOptions& options, const Skin& skin, PrinterReport* report,
-                   RunContext& context) {
+Status solve_frame(const FrameProblem& problem, const JobOptions& options, const Skin& skin,
+                   PrinterReport* report, RunContext& context) {
   if (options.no_optimize) {
     report->optimised = at_lower_bounds(problem);
     report->termination = "NOT_OPTIMIZED";
@@ -113,7 +122,8 @@ Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting
 
     context.report({.stage = Stage::kExport, .frame_volume_mm3 = report->statistics.frame_volume_mm3});
     auto merged = merge_solid(setting.prepared.solid, setting.skin, report->optimised->problem.frame,
-                              report->optimised->radii_mm, ExportOptions{.voxel_mm = setting.options.voxel_mm}, context);
+                              report->optimised->radii_mm,
+                              ExportOptions{.voxel_mm = setting.options.voxel_mm}, context);
     if (!merged) return merged.error();
     setting.laps.lap("export");
     const double margin_mm =
@@ -125,7 +135,8 @@ Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting
       report->termination = "INFEASIBLE";
       report->optimised->violated_constraint = kPrintedBalance;
       report->detail = report->termination_detail = fmt::format(
-          "balance: the centre of gravity of the printed mesh stays {:.2f} mm outside the base contact", -margin_mm);
+          "balance: the centre of gravity of the printed mesh stays {:.2f} mm outside the base contact",
+          -margin_mm);
       fill_statistics(setting, report);
       return std::optional<PrintableMesh>();
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The optimised frame and the mesh that is printed of it, in rounds: the nominal model counts overlapping struts twice, so
-// its centre of gravity is not quite that of the print. Where balance is claimed, what the print lacks is asked of the
-// model as well, until the printed mesh itself stands.
+// The optimised frame and the mesh that is printed of it, in rounds: the nominal model counts overlapping
+// struts twice, so its centre of gravity is not quite that of the print. Where balance is claimed, what the
+// print lacks is asked of the model as well, until the printed mesh itself stands.
 #pragma once
 
 #include <optional>

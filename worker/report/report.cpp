@@ -26,7 +26,8 @@ json tips_json(const OptimizeResult& result) {
         ++nodes;
       }
     if (nodes > 0)
-      tips.push_back({{"load_case", result.problem.load_cases[c].name}, {"pull_n", pull_n}, {"nodes", nodes}});
+      tips.push_back(
+          {{"load_case", result.problem.load_cases[c].name}, {"pull_n", pull_n}, {"nodes", nodes}});
   }
   return tips;
 }
@@ -35,27 +36,42 @@ json tips_json(const OptimizeResult& result) {
 
 const char* to_string(Reason reason) {
   switch (reason) {
-    case Reason::kNone: return "NONE";
-    case Reason::kPartial: return "PARTIAL";
-    case Reason::kInvalidInput: return "INVALID_INPUT";
-    case Reason::kDoesNotFit: return "DOES_NOT_FIT";
-    case Reason::kInfeasible: return "INFEASIBLE";
-    case Reason::kOutOfMemory: return "OUT_OF_MEMORY";
-    case Reason::kInternal: return "INTERNAL";
-    case Reason::kCancelled: return "CANCELLED";
-    case Reason::kUnsupported: return "UNSUPPORTED";
+    case Reason::kNone:
+      return "NONE";
+    case Reason::kPartial:
+      return "PARTIAL";
+    case Reason::kInvalidInput:
+      return "INVALID_INPUT";
+    case Reason::kDoesNotFit:
+      return "DOES_NOT_FIT";
+    case Reason::kInfeasible:
+      return "INFEASIBLE";
+    case Reason::kOutOfMemory:
+      return "OUT_OF_MEMORY";
+    case Reason::kInternal:
+      return "INTERNAL";
+    case Reason::kCancelled:
+      return "CANCELLED";
+    case Reason::kUnsupported:
+      return "UNSUPPORTED";
   }
   return "INTERNAL";
 }
 
 Reason reason_of(ErrorKind kind) {
   switch (kind) {
-    case ErrorKind::kInvalidInput: return Reason::kInvalidInput;
-    case ErrorKind::kDoesNotFit: return Reason::kDoesNotFit;
-    case ErrorKind::kUnsupported: return Reason::kUnsupported;
-    case ErrorKind::kIo: return Reason::kInternal;
-    case ErrorKind::kCancelled: return Reason::kCancelled;
-    case ErrorKind::kInternal: return Reason::kInternal;
+    case ErrorKind::kInvalidInput:
+      return Reason::kInvalidInput;
+    case ErrorKind::kDoesNotFit:
+      return Reason::kDoesNotFit;
+    case ErrorKind::kUnsupported:
+      return Reason::kUnsupported;
+    case ErrorKind::kIo:
+      return Reason::kInternal;
+    case ErrorKind::kCancelled:
+      return Reason::kCancelled;
+    case ErrorKind::kInternal:
+      return Reason::kInternal;
   }
   return Reason::kInternal;
 }
@@ -102,41 +118,41 @@ json to_json(const PrinterReport& report) {
   if (!report.optimised) return refused_json(report);
   const OptimizeResult& result = *report.optimised;
   const Statistics& s = report.statistics;
-  json out = {
-      {"printer", report.printer},
-      {"material", report.material},
-      {"reason", to_string(report.reason)},
-      {"detail", report.detail},
-      {"model", "paper (axial and shear springs, no rotations)"},
-      {"profile",
-       {{"min_radius_mm", report.min_radius_mm},
-        {"skin_thickness_mm", report.skin_thickness_mm},
-        {"max_internal_radius_mm", report.max_internal_radius_mm},
-        {"tray_mm", vector_json(report.tray_mm)},
-        {"density_g_cm3", report.density_g_cm3}}},
-      {"solid_volume_mm3", s.solid_volume_mm3},
-      {"skin_volume_mm3", s.skin_volume_mm3},
-      {"frame_volume_mm3", s.frame_volume_mm3},
-      {"total_volume_mm3", s.total_volume_mm3},
-      {"ratio", s.ratio},
-      {"counts",
-       {{"initial", stage_json(result.initial)},
-        {"size", stage_json(result.size)},
-        {"topology", stage_json(result.topology)},
-        {"geometry", stage_json(result.geometry)}}},
-      {"size_volume_mm3", result.size.volume_mm3},
-      {"topology_volume_mm3", result.topology.volume_mm3},
-      {"geometry_volume_mm3", result.geometry.volume_mm3},
-      {"iterations", {{"outer", result.outer_iterations}, {"interior_point", result.interior_point_iterations}}},
-      {"max_displacement_mm", result.evaluation.max_displacement_mm},
-      {"max_axial_ratio", result.evaluation.max_axial_ratio},
-      {"max_shear_ratio", result.evaluation.max_shear_ratio},
-      {"min_radius_mm", result.evaluation.min_radius_mm},
-      {"balance", s.balance},
-      {"tips", tips_json(result)},
-      {"warnings", report.warnings},
-      {"seconds", report.seconds},
-      {"termination", {{"reason", report.termination}, {"detail", report.termination_detail}}}};
+  json out = {{"printer", report.printer},
+              {"material", report.material},
+              {"reason", to_string(report.reason)},
+              {"detail", report.detail},
+              {"model", "paper (axial and shear springs, no rotations)"},
+              {"profile",
+               {{"min_radius_mm", report.min_radius_mm},
+                {"skin_thickness_mm", report.skin_thickness_mm},
+                {"max_internal_radius_mm", report.max_internal_radius_mm},
+                {"tray_mm", vector_json(report.tray_mm)},
+                {"density_g_cm3", report.density_g_cm3}}},
+              {"solid_volume_mm3", s.solid_volume_mm3},
+              {"skin_volume_mm3", s.skin_volume_mm3},
+              {"frame_volume_mm3", s.frame_volume_mm3},
+              {"total_volume_mm3", s.total_volume_mm3},
+              {"ratio", s.ratio},
+              {"counts",
+               {{"initial", stage_json(result.initial)},
+                {"size", stage_json(result.size)},
+                {"topology", stage_json(result.topology)},
+                {"geometry", stage_json(result.geometry)}}},
+              {"size_volume_mm3", result.size.volume_mm3},
+              {"topology_volume_mm3", result.topology.volume_mm3},
+              {"geometry_volume_mm3", result.geometry.volume_mm3},
+              {"iterations",
+               {{"outer", result.outer_iterations}, {"interior_point", result.interior_point_iterations}}},
+              {"max_displacement_mm", result.evaluation.max_displacement_mm},
+              {"max_axial_ratio", result.evaluation.max_axial_ratio},
+              {"max_shear_ratio", result.evaluation.max_shear_ratio},
+              {"min_radius_mm", result.evaluation.min_radius_mm},
+              {"balance", s.balance},
+              {"tips", tips_json(result)},
+              {"warnings", report.warnings},
+              {"seconds", report.seconds},
+              {"termination", {{"reason", report.termination}, {"detail", report.termination_detail}}}};
   if (s.balance_margin_mm) out["balance_margin_mm"] = *s.balance_margin_mm;
   if (result.lower_bound_mm3) out["lower_bound_mm3"] = *result.lower_bound_mm3;
   if (result.best_reachable_displacement_mm)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// report.json: what a job tells its user, one object a printer. Nominal figures (the paper's: sum of pi r^2 l plus skin)
-// and those of the exported mesh stand apart; figures of the paper's mechanical model are named so in "model".
-// A field is there when its value is known; nothing is guessed.
+// report.json: what a job tells its user, one object a printer. Nominal figures (the paper's: sum of pi r^2 l
+// plus skin) and those of the exported mesh stand apart; figures of the paper's mechanical model are named so
+// in "model". A field is there when its value is known; nothing is guessed.
 #pragma once
 
 #include <map>
@@ -47,8 +47,8 @@ struct Statistics {
   double printed_volume_mm3 = 0, printed_ratio = 0, weight_g = 0;
   int skin_nodes = 0, nodes = 0, struts = 0;
   double max_displacement_mm = 0;
-  std::string balance;                       // "holds", "not_standing", "off", "not_claimed"
-  std::optional<double> balance_margin_mm;   // of the nominal centre of gravity inside the base contact
+  std::string balance;                      // "holds", "not_standing", "off", "not_claimed"
+  std::optional<double> balance_margin_mm;  // of the nominal centre of gravity inside the base contact
 };
 nlohmann::json to_json(const Statistics& statistics);
 

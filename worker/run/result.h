@@ -2,7 +2,8 @@
 // What a stage gives back when it could not try: the first of three kinds of error.
 //
 //   1. Could not try (bad input, I/O): Result<T> holds an Error that names the element and the remedy.
-//   2. Tried, and it ended thus (infeasible, iteration limit): a value with a termination reason, never an Error.
+//   2. Tried, and it ended thus (infeasible, iteration limit): a value with a termination reason, never an
+//   Error.
 //   3. A bug: SKINFRAME_CHECK aborts the job's process, never the server.
 #pragma once
 
@@ -32,8 +33,8 @@ struct Error {
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::move(value)) {}            // NOLINT(google-explicit-constructor)
-  Result(Error error) : state_(std::move(error)) {}        // NOLINT(google-explicit-constructor)
+  Result(T value) : state_(std::move(value)) {}      // NOLINT(google-explicit-constructor)
+  Result(Error error) : state_(std::move(error)) {}  // NOLINT(google-explicit-constructor)
   bool ok() const { return state_.index() == 0; }
   explicit operator bool() const { return ok(); }
   const T& value() const& { return std::get<0>(state_); }
@@ -59,10 +60,10 @@ inline Error internal_error(std::string message) { return {ErrorKind::kInternal,
 }  // namespace skinframe
 
 // Kind 3: an invariant of ours does not hold. The job's process ends; the agent reports CRASHED.
-#define SKINFRAME_CHECK(condition)                                                                     \
-  do {                                                                                                 \
-    if (!(condition)) {                                                                                \
-      std::fprintf(stderr, "%s:%d: check failed: %s\n", __FILE__, __LINE__, #condition);               \
-      std::abort();                                                                                    \
-    }                                                                                                  \
+#define SKINFRAME_CHECK(condition)                                                       \
+  do {                                                                                   \
+    if (!(condition)) {                                                                  \
+      std::fprintf(stderr, "%s:%d: check failed: %s\n", __FILE__, __LINE__, #condition); \
+      std::abort();                                                                      \
+    }                                                                                    \
   } while (false)

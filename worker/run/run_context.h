@@ -18,14 +18,22 @@ enum class Stage { kRead, kRepair, kSkin, kSample, kSize, kTopology, kGeometry, 
 
 inline const char* to_string(Stage stage) {
   switch (stage) {
-    case Stage::kRead: return "read";
-    case Stage::kRepair: return "repair";
-    case Stage::kSkin: return "skin";
-    case Stage::kSample: return "sample";
-    case Stage::kSize: return "size";
-    case Stage::kTopology: return "topology";
-    case Stage::kGeometry: return "geometry";
-    case Stage::kExport: return "export";
+    case Stage::kRead:
+      return "read";
+    case Stage::kRepair:
+      return "repair";
+    case Stage::kSkin:
+      return "skin";
+    case Stage::kSample:
+      return "sample";
+    case Stage::kSize:
+      return "size";
+    case Stage::kTopology:
+      return "topology";
+    case Stage::kGeometry:
+      return "geometry";
+    case Stage::kExport:
+      return "export";
   }
   return "unknown";
 }
@@ -33,9 +41,9 @@ inline const char* to_string(Stage stage) {
 // One tick of progress. What is not known yet stays empty, never zero.
 struct Progress {
   Stage stage = Stage::kRead;
-  int iteration = 0;                        // of the stage's own loop; 0 where it has none
-  std::optional<double> frame_volume_mm3;   // nominal, sum of pi r^2 l
-  std::optional<double> violation;          // worst relative constraint violation of the current iterate
+  int iteration = 0;                       // of the stage's own loop; 0 where it has none
+  std::optional<double> frame_volume_mm3;  // nominal, sum of pi r^2 l
+  std::optional<double> violation;         // worst relative constraint violation of the current iterate
   std::optional<int> struts_left;
 };
 

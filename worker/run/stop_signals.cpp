@@ -50,7 +50,8 @@ bool StopSignals::came_within(std::chrono::milliseconds time) const {
   ::pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
   pollfd event{event_, POLLIN, 0};
   std::uint64_t count = 0;
-  return ::poll(&event, 1, static_cast<int>(time.count())) > 0 && ::read(event_, &count, sizeof count) == sizeof count;
+  return ::poll(&event, 1, static_cast<int>(time.count())) > 0 &&
+         ::read(event_, &count, sizeof count) == sizeof count;
 }
 
 }  // namespace skinframe

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// SIGTERM and SIGINT as something to wait for. By a handler, not by blocking alone: libraries (OpenBLAS) start threads when
-// they are loaded, which have nothing blocked, and a signal that reached one of them would end the process in the midst
-// of its work. Our threads block the two, and so do children until they are at exec.
+// SIGTERM and SIGINT as something to wait for. By a handler, not by blocking alone: libraries (OpenBLAS)
+// start threads when they are loaded, which have nothing blocked, and a signal that reached one of them would
+// end the process in the midst of its work. Our threads block the two, and so do children until they are at
+// exec.
 #pragma once
 
 #include <signal.h>
@@ -10,8 +11,8 @@
 
 namespace skinframe {
 
-// One at a time in a process; make it before any other thread of ours starts. When it goes, further signals are ignored:
-// the process is ending already.
+// One at a time in a process; make it before any other thread of ours starts. When it goes, further signals
+// are ignored: the process is ending already.
 class StopSignals {
  public:
   StopSignals();

@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kDefaultVoxelInThicknesses = 0.3;
 constexpr double kCoarseCellsAcross =
-    200.0;  // of the largest edge of the box: at most 8 million coarse voxels
-constexpr double kLeastCoarseness = 2.0;     // and at least this many fine voxels, on small bodies
+    200.0;                                // of the largest edge of the box: at most 8 million coarse voxels
+constexpr double kLeastCoarseness = 2.0;  // and at least this many fine voxels, on small bodies
 constexpr double kOuterVoxels = 3.0;
 constexpr double kSpareInnerVoxels = 4.0;
 // The fine grid holds some 24 voxels under and over every voxel's square of surface, 8 bytes each while it is

@@ -25,8 +25,8 @@ Polygon2 contact_hull(const TriangleMesh& mesh, double tolerance_mm = kContactTo
 // Convex hull (monotone chain): counter-clockwise, without collinear points.
 Polygon2 convex_hull(std::vector<Eigen::Vector2d> points);
 
-// A convex polygon inside `hull` with at most max_corners (>= 3) of its corners: again and again the corner that cuts
-// off the least area goes. Of a circle's hull, 24 corners leave out less than 1 % of the radius.
+// A convex polygon inside `hull` with at most max_corners (>= 3) of its corners: again and again the corner
+// that cuts off the least area goes. Of a circle's hull, 24 corners leave out less than 1 % of the radius.
 Polygon2 inscribed_polygon(Polygon2 hull, int max_corners);
 
 // Distance of `point` to the boundary of a convex counter-clockwise polygon: positive inside, negative

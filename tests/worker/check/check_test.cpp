@@ -103,22 +103,27 @@ TEST_F(CheckTest, AMissingTriangleIsNotWatertight) {
 }
 
 TEST_F(CheckTest, AWallThinnerThanTheSkinIsSeen) {
-  EXPECT_THAT(denied_report([](json& printer) { printer["profile"]["skin_thickness_mm"] = 1.4; }), Names("skin thickness"));
+  EXPECT_THAT(denied_report([](json& printer) { printer["profile"]["skin_thickness_mm"] = 1.4; }),
+              Names("skin thickness"));
 }
 
 TEST_F(CheckTest, FalseVolumesAndWeightsAreSeen) {
-  EXPECT_THAT(denied_report([](json& p) { p["printed_volume_mm3"] = p["printed_volume_mm3"].get<double>() * 0.99; }),
-              Names("printed volume"));
+  EXPECT_THAT(
+      denied_report([](json& p) { p["printed_volume_mm3"] = p["printed_volume_mm3"].get<double>() * 0.99; }),
+      Names("printed volume"));
   EXPECT_THAT(denied_report([](json& p) { p["weight_g"] = p["weight_g"].get<double>() * 0.9; }),
               Names("printed ratio and weight"));
-  EXPECT_THAT(denied_report([](json& p) { p["solid_volume_mm3"] = p["solid_volume_mm3"].get<double>() * 1.01; }),
-              Names("outer surface is the solid"));
+  EXPECT_THAT(
+      denied_report([](json& p) { p["solid_volume_mm3"] = p["solid_volume_mm3"].get<double>() * 1.01; }),
+      Names("outer surface is the solid"));
   EXPECT_THAT(denied_report([](json& p) { p["skin_volume_mm3"] = p["skin_volume_mm3"].get<double>() * 0.8; }),
               Names("skin volume"));
-  EXPECT_THAT(denied_report([](json& p) { p["frame_volume_mm3"] = p["frame_volume_mm3"].get<double>() * 0.99; }),
-              Names("nominal volumes"));
-  EXPECT_THAT(denied_report([](json& p) { p["topology_volume_mm3"] = p["size_volume_mm3"].get<double>() * 1.1; }),
-              Names("no volume rises from stage to stage"));
+  EXPECT_THAT(
+      denied_report([](json& p) { p["frame_volume_mm3"] = p["frame_volume_mm3"].get<double>() * 0.99; }),
+      Names("nominal volumes"));
+  EXPECT_THAT(
+      denied_report([](json& p) { p["topology_volume_mm3"] = p["size_volume_mm3"].get<double>() * 1.1; }),
+      Names("no volume rises from stage to stage"));
 }
 
 TEST_F(CheckTest, AStrutThinnerThanThePrinterCanIsSeen) {
@@ -134,21 +139,25 @@ TEST_F(CheckTest, ASlenderStrutIsSeen) {
 }
 
 TEST_F(CheckTest, ATornTriangulationIsSeen) {
-  EXPECT_THAT(denied_frame([](json& frame) { frame["skin_triangles"].erase(0); }), Names("skin triangulation"));
+  EXPECT_THAT(denied_frame([](json& frame) { frame["skin_triangles"].erase(0); }),
+              Names("skin triangulation"));
 }
 
 TEST_F(CheckTest, AMovedNodeBreaksEquilibrium) {
-  EXPECT_THAT(denied_frame([](json& frame) { frame["nodes"][20][0] = frame["nodes"][20][0].get<double>() + 1.0; }),
-              Names("equilibrium (paper model)"));
+  EXPECT_THAT(
+      denied_frame([](json& frame) { frame["nodes"][20][0] = frame["nodes"][20][0].get<double>() + 1.0; }),
+      Names("equilibrium (paper model)"));
 }
 
 TEST_F(CheckTest, AFalseDisplacementIsSeen) {
-  EXPECT_THAT(denied_report([](json& p) { p["max_displacement_mm"] = 0.5 * p["max_displacement_mm"].get<double>(); }),
-              Names("displacement (paper model)"));
+  EXPECT_THAT(
+      denied_report([](json& p) { p["max_displacement_mm"] = 0.5 * p["max_displacement_mm"].get<double>(); }),
+      Names("displacement (paper model)"));
 }
 
 TEST_F(CheckTest, ALimitThatIsNotKeptIsSeen) {
-  EXPECT_THAT(denied_frame([](json& frame) { frame["displacement_limit_mm"] = 1e-4; }), Names("displacement (paper model)"));
+  EXPECT_THAT(denied_frame([](json& frame) { frame["displacement_limit_mm"] = 1e-4; }),
+              Names("displacement (paper model)"));
 }
 
 TEST_F(CheckTest, AStressBeyondStrengthIsSeen) {
@@ -157,7 +166,10 @@ TEST_F(CheckTest, AStressBeyondStrengthIsSeen) {
 }
 
 TEST_F(CheckTest, ACentreOfGravityOutsideTheBaseIsSeen) {
-  EXPECT_THAT(denied_frame([](json& frame) { frame["skin_mass"]["centroid_mm"] = {500, 0, 10}; }), Names("balance"));
+  EXPECT_THAT(denied_frame([](json& frame) {
+                frame["skin_mass"]["centroid_mm"] = {500, 0, 10};
+              }),
+              Names("balance"));
 }
 
 TEST_F(CheckTest, ATraySmallerThanTheBodyIsSeen) {
@@ -165,14 +177,21 @@ TEST_F(CheckTest, ATraySmallerThanTheBodyIsSeen) {
 }
 
 TEST_F(CheckTest, ANodeWithoutAPathToTheBaseIsSeen) {
-  EXPECT_THAT(denied_frame([](json& frame) { frame["nodes"].push_back({0, 0, 20}); frame["skin_weight_n"].push_back(0.0); }),
+  EXPECT_THAT(denied_frame([](json& frame) {
+                frame["nodes"].push_back({0, 0, 20});
+                frame["skin_weight_n"].push_back(0.0);
+              }),
               Names("every node stands on the base"));
 }
 
 TEST_F(CheckTest, AMeshWithoutTheStrutsIsSeen) {
   EXPECT_THAT(denied_frame([](json& frame) {
                 // Struts that run through the void: from one skin node straight across the body.
-                frame["struts"].push_back({{"a", 0}, {"b", 30}, {"skin", false}, {"radius_mm", 0.6}, {"min_radius_mm", 0.5},
+                frame["struts"].push_back({{"a", 0},
+                                           {"b", 30},
+                                           {"skin", false},
+                                           {"radius_mm", 0.6},
+                                           {"min_radius_mm", 0.5},
                                            {"max_radius_mm", 5}});
               }),
               Names("struts are printed"));
@@ -190,7 +209,8 @@ TEST_F(CheckTest, AMissingOrBrokenFileIsAnErrorThatNamesIt) {
   const auto error = denied([](const fs::path& copy) { fs::remove(copy / kPrinter / "frame.json"); });
   ASSERT_EQ(error.size(), 1u);
   EXPECT_NE(error[0].find("frame.json"), std::string::npos) << error[0];
-  const auto broken = denied([](const fs::path& copy) { std::ofstream(copy / "report.json") << "{\"printers\": ["; });
+  const auto broken =
+      denied([](const fs::path& copy) { std::ofstream(copy / "report.json") << "{\"printers\": ["; });
   EXPECT_NE(broken.at(0).find("not JSON"), std::string::npos) << broken[0];
   const auto index = denied_frame([](json& frame) { frame["struts"][0]["a"] = 100000; });
   EXPECT_NE(index.at(0).find("struts[0].a"), std::string::npos) << index[0];

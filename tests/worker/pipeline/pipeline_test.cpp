@@ -64,7 +64,8 @@ TEST(Pipeline, ProgressNamesEveryStageInOrder) {
   };
   RunContext context;
   ASSERT_TRUE(run_pipeline(request, folder.path() / "out", observer, context).ok());
-  for (const Stage stage : {Stage::kRead, Stage::kRepair, Stage::kSkin, Stage::kSample, Stage::kSize, Stage::kExport})
+  for (const Stage stage :
+       {Stage::kRead, Stage::kRepair, Stage::kSkin, Stage::kSample, Stage::kSize, Stage::kExport})
     EXPECT_NE(std::find(stages.begin(), stages.end(), stage), stages.end()) << to_string(stage);
   EXPECT_EQ(stages.back(), Stage::kExport);
 }
@@ -98,8 +99,8 @@ TEST(Pipeline, WithoutOptimisationRadiiStandAtTheirLowerBoundsAndNoLimitIsClaime
   EXPECT_EQ(report["printers"][0]["min_radius_mm"], 0.5);
 }
 
-// Figure 7 of the paper: with the smaller base the centre of gravity of the light structure would fall outside, and mass has
-// to go low and to the other side: into the pillar.
+// Figure 7 of the paper: with the smaller base the centre of gravity of the light structure would fall
+// outside, and mass has to go low and to the other side: into the pillar.
 TEST(Pipeline, TheSmallerBaseGetsAThickerPillar) {
   test::ScratchFolder folder;
   double pillar_mm3[2] = {0, 0};

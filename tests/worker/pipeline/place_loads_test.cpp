@@ -44,7 +44,8 @@ TEST(PlaceLoads, ForceActsAtTheMiddleOfItsPatch) {
   auto cases = place_loads({{"push", Eigen::Vector3d(4, -3, 40), {0, 0, -10}, 6}}, box_solid(), frame);
   ASSERT_TRUE(cases.ok());
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < frame.nodes_mm.size(); ++i) moment += frame.nodes_mm[i].cross(cases->cases[1].force_n[i]);
+  for (std::size_t i = 0; i < frame.nodes_mm.size(); ++i)
+    moment += frame.nodes_mm[i].cross(cases->cases[1].force_n[i]);
   // Cells are half a millimetre wide: the patch's middle is met to a fraction of that.
   const Eigen::Vector3d wanted = Eigen::Vector3d(4, -3, 40).cross(Eigen::Vector3d(0, 0, -10));
   EXPECT_LT((moment - wanted).norm() / 10, 0.3);

@@ -33,8 +33,12 @@ TEST(HoldContact, TheLeastStopsTurningAboutTheUpwardAxis) {
   // A turn about the node held in x and y moves the other held node along its held axis.
   int centre = -1, rim = -1, axis = -1;
   for (int i = 0; i < 4; ++i) {
-    if (fixed[i][0] && fixed[i][1]) centre = i;
-    else if (fixed[i][0] || fixed[i][1]) { rim = i; axis = fixed[i][0] ? 0 : 1; }
+    if (fixed[i][0] && fixed[i][1])
+      centre = i;
+    else if (fixed[i][0] || fixed[i][1]) {
+      rim = i;
+      axis = fixed[i][0] ? 0 : 1;
+    }
   }
   ASSERT_GE(centre, 0);
   ASSERT_GE(rim, 0);

@@ -35,7 +35,8 @@ class ScratchFolder {
   std::filesystem::path path_;
 };
 
-inline JobRequest sample_job(const std::string& sample, double size_mm, int skin_nodes, const std::filesystem::path& folder) {
+inline JobRequest sample_job(const std::string& sample, double size_mm, int skin_nodes,
+                             const std::filesystem::path& folder) {
   RunContext context;
   auto mesh = make_sample(sample, context);
   SKINFRAME_CHECK(mesh.ok());

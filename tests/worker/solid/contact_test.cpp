@@ -94,7 +94,8 @@ TEST(Contact, APointOrEdgeIsNoStand) {
 
 TEST(InscribedPolygon, KeepsItsCornersAndLosesLessThanAHundredthOfACircle) {
   Polygon2 circle;
-  for (int i = 0; i < 300; ++i) circle.emplace_back(std::cos(2 * M_PI * i / 300), std::sin(2 * M_PI * i / 300));
+  for (int i = 0; i < 300; ++i)
+    circle.emplace_back(std::cos(2 * M_PI * i / 300), std::sin(2 * M_PI * i / 300));
   const Polygon2 few = inscribed_polygon(circle, 24);
   ASSERT_EQ(few.size(), 24u);
   for (const auto& corner : few) EXPECT_NE(std::find(circle.begin(), circle.end(), corner), circle.end());
