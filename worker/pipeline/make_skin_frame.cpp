@@ -59,11 +59,12 @@ PrinterReport begin_report(const PrinterRequest& request) {
 
 Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const PrinterRequest& request,
                                       const JobRequest& job, const std::filesystem::path& out_dir,
-                                      const PipelineObserver& observer, RunContext& context) {
+                                      const PipelineObserver& observer, const RunContext& shared) {
   const PrinterProfile& printer = request.printer;
   if (auto fits = fits_tray(prepared.solid, printer); !fits) return fits.error();
   PrinterReport report = begin_report(request);
   std::optional<double> skin_volume_mm3;
+  RunContext context = shared;
   context.report = [&](const Progress& progress) {
     observer.progress({printer.id, progress, skin_volume_mm3, prepared.solid.volume_mm3()});
   };

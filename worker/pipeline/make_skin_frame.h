@@ -12,6 +12,6 @@ namespace skinframe {
 // tried.
 Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const PrinterRequest& printer,
                                       const JobRequest& request, const std::filesystem::path& out_dir,
-                                      const PipelineObserver& observer, RunContext& context);
+                                      const PipelineObserver& observer, const RunContext& shared);
 
 }  // namespace skinframe

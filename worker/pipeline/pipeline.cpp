@@ -24,7 +24,7 @@ PrinterOutcome outcome_of(const PrinterReport& report) {
 // A printer that needs more memory than there is ends so, and its memory is free for the next one.
 Result<PrinterReport> make_or_run_out(const PreparedSolid& prepared, const PrinterRequest& printer,
                                       const JobRequest& request, const std::filesystem::path& out_dir,
-                                      const PipelineObserver& observer, RunContext& context) {
+                                      const PipelineObserver& observer, const RunContext& context) {
   try {
     return make_skin_frame(prepared, printer, request, out_dir, observer, context);
   } catch (const std::bad_alloc&) {
@@ -41,7 +41,8 @@ Result<PrinterReport> make_or_run_out(const PreparedSolid& prepared, const Print
 
 Result<std::vector<PrinterOutcome>> run_pipeline(const JobRequest& request,
                                                  const std::filesystem::path& out_dir,
-                                                 const PipelineObserver& observer, RunContext& context) {
+                                                 const PipelineObserver& observer, const RunContext& shared) {
+  RunContext context = shared;
   context.report = [&](const Progress& progress) { observer.progress({"", progress, {}, {}}); };
   auto prepared = prepare_solid(request, context);
   if (!prepared) return prepared.error();

@@ -4,12 +4,12 @@
 //   read -> place -> repair -> for each printer: skin -> sample -> pose -> optimise -> merge -> write
 //
 // Guarantees:
-//  1. out_dir holds files only as DESIGN names them: report.json, and a folder for each printer with a
-//  result.
+//  1. out_dir holds report.json and a folder for each printer with a result, and nothing else.
 //  2. A printer that is refused or fails does not sink the others; its outcome says why.
 //  3. Every figure in report.json is of what was written, or is named nominal.
+//  4. The context's own report is not called: progress goes to the observer.
 //
-// Example: run_pipeline(request, "out", [](const PipelineEvent&) {}, context)
+// Example: run_pipeline(request, "out", PipelineObserver{}, context)
 #pragma once
 
 #include <filesystem>
@@ -49,6 +49,6 @@ struct PipelineObserver {
 // disk), and cancellation.
 Result<std::vector<PrinterOutcome>> run_pipeline(const JobRequest& request,
                                                  const std::filesystem::path& out_dir,
-                                                 const PipelineObserver& observer, RunContext& context);
+                                                 const PipelineObserver& observer, const RunContext& shared);
 
 }  // namespace skinframe

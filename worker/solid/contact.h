@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where a body touches the plate, and whether it stands there (DESIGN section 2, "Standing"; constraint (8)
+// Where a body touches the plate, and whether it stands there (constraint (8)
 // of the paper: the centre of gravity projects into the convex hull of the base contact).
 // Units: mm.
 #pragma once

@@ -9,7 +9,7 @@
 //  3. Every coordinate is exactly representable as a float, and no two vertices coincide: a binary STL of
 //     it, welded by equality, is the same mesh.
 //  4. Every vertex is used by a triangle.
-// Not promised: freedom from self-intersection (published models have slight ones, DESIGN section 4), and
+// Not promised: freedom from self-intersection (published models have slight ones), and
 // one umbrella per vertex (two cones that touch at their tips share one).
 // Units: mm.
 #pragma once
