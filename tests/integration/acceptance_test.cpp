@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <ostream>
 
 #include "tests/integration/process.h"
 
@@ -19,9 +20,14 @@ struct Body {
   bool shared = false;      // of the corpus, not ours
   bool thin_limbs = false;  // exempt from the bound on the ratio
 };
+void PrintTo(const Body& body, std::ostream* out) { *out << body.name; }
+
 struct Setting {
   std::string printer, size_mm;
 };
+void PrintTo(const Setting& setting, std::ostream* out) {
+  *out << setting.printer << " at " << setting.size_mm << " mm";
+}
 
 class MainJob : public testing::TestWithParam<std::tuple<Body, Setting, bool>> {};
 
