@@ -8,7 +8,8 @@ build=(g++ cmake ninja-build pkg-config libeigen3-dev libcgal-dev libceres-dev l
        protobuf-compiler protobuf-compiler-grpc libspdlog-dev libfmt-dev nlohmann-json3-dev libcli11-dev
        libsuitesparse-dev libmetis-dev libopenblas-dev liblapack-dev libopenvdb-dev libtbb-dev libboost-dev
        libboost-iostreams-dev libblosc-dev zlib1g-dev libsqlite3-dev libssl-dev)
-tests=(libgtest-dev libgmock-dev prusa-slicer openssl coinor-libipopt-dev)
+tests=(libgtest-dev libgmock-dev prusa-slicer openssl coinor-libipopt-dev
+       spin)
 
 wanted=("${build[@]}")
 [ "${1:-}" = tests ] && wanted+=("${tests[@]}")
