@@ -20,7 +20,7 @@ constexpr std::size_t kBarWidth = 16;
 
 // The stages in order, as job.proto names them. How far the work is: by stage, since the time a stage takes
 // depends on the mesh.
-constexpr std::array<std::string_view, 8> kStages = {"read", "repair",   "skin",     "sample",
+constexpr std::array<std::string_view, 9> kStages = {"read", "repair",   "skin",     "stress", "sample",
                                                      "size", "topology", "geometry", "export"};
 
 std::size_t terminal_columns(std::FILE* out) {

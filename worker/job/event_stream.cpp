@@ -18,6 +18,8 @@ double share_behind(Stage stage) {
       return 0.02;
     case Stage::kSkin:
       return 0.05;
+    case Stage::kStress:
+      return 0.15;
     case Stage::kSample:
       return 0.2;
     case Stage::kSize:

@@ -14,7 +14,7 @@
 namespace skinframe {
 
 // The stages a user sees, in order. Names of the wire: to_string().
-enum class Stage { kRead, kRepair, kSkin, kSample, kSize, kTopology, kGeometry, kExport };
+enum class Stage { kRead, kRepair, kSkin, kStress, kSample, kSize, kTopology, kGeometry, kExport };
 
 inline const char* to_string(Stage stage) {
   switch (stage) {
@@ -24,6 +24,8 @@ inline const char* to_string(Stage stage) {
       return "repair";
     case Stage::kSkin:
       return "skin";
+    case Stage::kStress:
+      return "stress";
     case Stage::kSample:
       return "sample";
     case Stage::kSize:

@@ -74,6 +74,7 @@ Result<Skin> build(const TriangleMesh& mesh, const SkinOptions& options, const R
   skin.thickness_mm = options.thickness_mm;
   skin.voxel_mm = *voxel;
   skin.plate_z_mm = box.min.z();
+  skin.body_box_mm = box;
   const double volume = signed_volume(mesh);
   Eigen::Vector3d moment = volume * volume_centroid(mesh);
   const TriangleMesh cavity = iso_surface(*grids->fine, -options.thickness_mm);

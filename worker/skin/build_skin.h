@@ -28,6 +28,7 @@ struct Skin {
   double thickness_mm = 0.0;
   double voxel_mm = 0.0;
   double plate_z_mm = 0.0;  // lowest z of M
+  BoundingBox body_box_mm;  // of M
   DistanceField field;
   // M1 from the coarse grid (about 1 mm at 200 mm), closed and outward, for sampling. Empty where all is
   // thin.
