@@ -19,5 +19,6 @@ Result<MeshFile> read_ascii_stl(const ReadRequest& request);
 Result<MeshFile> read_obj(const ReadRequest& request);
 Result<MeshFile> read_ply(const ReadRequest& request);
 Result<MeshFile> read_off(const ReadRequest& request);
+Result<MeshFile> read_3mf(const ReadRequest& request);
 
 }  // namespace skinframe

@@ -18,7 +18,7 @@
 namespace skinframe {
 namespace {
 
-constexpr std::string_view kZipMagic = "PK\x03\x04";
+constexpr std::string_view kZipMagics[] = {"PK\x03\x04", "PK\x05\x06"};  // the second: without entries
 // Text is looked at this far: long enough for a licence in comments ahead of the first keyword.
 constexpr std::size_t kSniffedBytes = std::size_t{1} << 16;
 
@@ -101,7 +101,9 @@ Result<MeshFile> read_by_content(const ReadRequest& request) {
   const std::string_view bytes = request.bytes;
   const std::string_view head = bytes.substr(0, kSniffedBytes);
   if (bytes.empty()) return invalid_input("the file is empty (0 bytes)");
-  if (bytes.starts_with(kZipMagic)) return unsupported("3MF is not read yet; export as STL, OBJ, PLY or OFF");
+  for (const std::string_view magic : kZipMagics) {
+    if (bytes.starts_with(magic)) return read_3mf(request);
+  }
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return read_ply(request);
   if (is_exact_binary_stl(bytes)) return read_binary_stl(request);
   if (looks_like_off(head)) return read_off(request);
@@ -112,7 +114,7 @@ Result<MeshFile> read_by_content(const ReadRequest& request) {
   }
   if (announced_stl_triangles(bytes)) return read_binary_stl(request);  // which says what does not agree
   return invalid_input(fmt::format(
-      "{} bytes are neither STL, OBJ, PLY nor OFF; export the mesh as one of these", bytes.size()));
+      "{} bytes are neither STL, OBJ, PLY, OFF nor 3MF; export the mesh as one of these", bytes.size()));
 }
 
 }  // namespace
@@ -126,12 +128,21 @@ Status ReadLimits::validate() const {
   return ok_status();
 }
 
+Result<MeshFile> read_mesh_bytes(std::string_view bytes, const ReadLimits& limits, RunContext& context) {
+  if (Status s = limits.validate(); !s.ok()) return s.error();
+  if (bytes.size() > limits.max_file_bytes) {
+    return invalid_input(fmt::format("{} bytes are more than the limit of {}; simplify the mesh",
+                                     bytes.size(), limits.max_file_bytes));
+  }
+  return read_by_content({bytes, limits, context});
+}
+
 Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadLimits& limits, RunContext& context) {
   if (Status s = limits.validate(); !s.ok()) return s.error();
   try {
     Result<std::string> bytes = load(path, limits, context);
     if (!bytes.ok()) return bytes.error();
-    Result<MeshFile> file = read_by_content({*bytes, limits, context});
+    Result<MeshFile> file = read_mesh_bytes(*bytes, limits, context);
     if (file.ok() || file.error().kind == ErrorKind::kCancelled) return file;
     return Error{file.error().kind, fmt::format("{}: {}", path.filename().string(), file.error().message)};
   } catch (const std::bad_alloc&) {

@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads a triangle mesh from a file: STL (binary, ASCII), OBJ, PLY (ASCII, both endians), OFF.
+// Reads a triangle mesh from a file: STL (binary, ASCII), OBJ, PLY (ASCII, both endians), OFF, 3MF.
 //
 // Guarantees:
 //  1. The type is decided by the file's content, never by its name.
 //  2. Every index of the mesh names a vertex, every coordinate is finite, there is at least one triangle.
 //     Vertices that no triangle uses are dropped, so that the bounding box is that of the surface.
 //  3. No memory is taken on the word of a header: a count is compared with the bytes that are there first.
-//  4. Polygons are triangulated by ear clipping; nothing else is changed. STL corners that are equal to the
+//     What a 3MF package inflates to and how often its objects are placed is counted before memory is taken.
+//  4. Nothing is written, and no file is opened but the one asked for.
+//  5. Polygons are triangulated by ear clipping; nothing else is changed. STL corners that are equal to the
 //     last bit share a vertex (STL knows no sharing); near misses are left to repair().
 //
 // Errors: kInvalidInput names the element ("line 17: ...", "triangle 41: index 9000 of 512 vertices");
-// kUnsupported for 3MF; kIo when the file cannot be opened or read; kCancelled.
+// kUnsupported for a variant or a required 3MF extension that is not read; kIo when the file cannot be opened
+// or read; kCancelled.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "worker/mesh/triangle_mesh.h"
@@ -35,11 +39,14 @@ struct ReadLimits {
 };
 
 struct MeshFile {
-  TriangleMesh mesh;               // in the file's own units
-  std::string format;              // "STL (binary)", "STL (ASCII)", "OBJ", "PLY", "OFF"
+  TriangleMesh mesh;               // in the file's own units; a 3MF file knows its unit and comes in mm
+  std::string format;              // "STL (binary)", "STL (ASCII)", "OBJ", "PLY", "OFF", "3MF"
   std::vector<std::string> notes;  // what was done beside reading: "triangulated 12 polygons"
 };
 
 Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadLimits& limits, RunContext& context);
+
+// The same for a file that is in memory already; messages begin without a name.
+Result<MeshFile> read_mesh_bytes(std::string_view bytes, const ReadLimits& limits, RunContext& context);
 
 }  // namespace skinframe

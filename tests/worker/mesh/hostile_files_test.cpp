@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "tests/worker/mesh/mesh_files.h"
+#include "tests/worker/mesh/zip_files.h"
 
 namespace skinframe {
 namespace {
@@ -19,7 +19,8 @@ std::vector<std::string> one_of_each_kind() {
           off(),
           ascii_ply(),
           binary_ply<float>(false),
-          binary_ply<double>(true)};
+          binary_ply<double>(true),
+          threemf()};
 }
 
 void expect_error_or_promises_kept(const std::string& bytes) {
@@ -83,13 +84,6 @@ TEST(HostileFiles, EmptyMissingAndDirectoryAreNamed) {
   const auto directory = read_mesh(std::filesystem::temp_directory_path(), {}, context);
   ASSERT_FALSE(directory.ok());
   EXPECT_EQ(directory.error().kind, ErrorKind::kIo);
-}
-
-TEST(HostileFiles, ThreeMfIsRefusedByName) {
-  const auto file = read_bytes("PK\x03\x04 and so on");
-  ASSERT_FALSE(file.ok());
-  EXPECT_EQ(file.error().kind, ErrorKind::kUnsupported);
-  EXPECT_THAT(file.error().message, HasSubstr("3MF is not read yet; export as STL, OBJ, PLY or OFF"));
 }
 
 TEST(HostileFiles, EveryLimitIsKeptByEveryFormat) {

@@ -107,8 +107,7 @@ INSTANTIATE_TEST_SUITE_P(Corpus, RefusedMesh,
                                            Refusal{"empty_stl", "no triangle"}, Refusal{"moebius", "Moebius"},
                                            Refusal{"nan_vertex", "triangle 37: corner 1 is not finite"},
                                            Refusal{"truncated", "room for 1616"},
-                                           Refusal{"lying_count", "4294967295 triangles"},
-                                           Refusal{"threemf_one_inch_cube", "3MF is not read yet"}),
+                                           Refusal{"lying_count", "4294967295 triangles"}),
                          [](const auto& tested) { return std::string(tested.param.id); });
 
 TEST(Corpus, ContentDecidesNotTheName) {
