@@ -2,48 +2,31 @@
 #include "worker/optimize/block_ldlt.h"
 
 #include <algorithm>
-
-extern "C" {
-void dsytrf_(const char* uplo, const int* n, double* a, const int* lda, int* ipiv, double* work,
-             const int* lwork, int* info);
-void dsytrs_(const char* uplo, const int* n, const int* nrhs, const double* a, const int* lda,
-             const int* ipiv, double* b, const int* ldb, int* info);
-void dsytrs2_(const char* uplo, const int* n, const int* nrhs, double* a, const int* lda, const int* ipiv,
-              double* b, const int* ldb, double* work, int* info);
-void dgemm_(const char* transa, const char* transb, const int* m, const int* n, const int* k,
-            const double* alpha, const double* a, const int* lda, const double* b, const int* ldb,
-            const double* beta, double* c, const int* ldc);
-void openblas_set_num_threads(int threads) __attribute__((weak));
-}
+#include <atomic>
 
 namespace skinframe {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using ConstBlock = Eigen::Map<const MatrixXd>;
 
-constexpr int kWidthForLevel3 = 8;  // dsytrs2 pays from here on
-constexpr int kUpdateColumns = 96;  // the symmetric update is done in column strips, lower part only
-
-// dense(row.., column..) += block in the lower triangle of the front.
-template <class Block>
-void add_lower(MatrixXd& dense, int row, int column, const Block& block) {
-  if (row >= column)
-    dense.block(row, column, block.rows(), block.cols()) += block;
-  else
-    dense.block(column, row, block.cols(), block.rows()) += block.transpose();
-}
+// How the work on one front is cut for the team. The cuts are made at any number of threads, since the order
+// of sums within BLAS depends on them.
+constexpr int kSolvedRows = 192;
+constexpr int kUpdatedColumns = 96;
+constexpr int kAssembledColumns = 96;
 
 }  // namespace
 
-void use_one_blas_thread() {
-  if (openblas_set_num_threads) openblas_set_num_threads(1);
-}
-
-BlockLdlt::BlockLdlt(std::vector<int> block_rows, std::vector<std::pair<int, int>> edges)
+BlockLdlt::BlockLdlt(std::vector<int> block_rows, std::vector<std::pair<int, int>> edges,
+                     std::shared_ptr<ThreadTeam> team, std::function<bool()> cancelled)
     : block_rows_(std::move(block_rows)),
       edges_(std::move(edges)),
-      order_(order_blocks(block_rows_, edges_)) {
+      order_(order_blocks(block_rows_, edges_)),
+      schedule_(schedule_fronts(order_.fronts)),
+      team_(std::move(team)),
+      cancelled_(std::move(cancelled)) {
   first_row_.resize(block_rows_.size());
   for (int block : order_.block_at) {
     first_row_[block] = rows_;
@@ -64,7 +47,18 @@ BlockLdlt::BlockLdlt(std::vector<int> block_rows, std::vector<std::pair<int, int
     edges_at_[std::min(order_.position[a], order_.position[b])].push_back(static_cast<int>(e));
   }
   edge_values_.resize(values);
-  factors_.resize(order_.fronts.size());
+  values = 0;
+  for (const Front& front : order_.fronts) {
+    panel_start_.push_back(values);
+    values += static_cast<std::size_t>(front.pivot_rows) * (front.pivot_rows + front.update_rows);
+    std::vector<int>& rows = update_rows_.emplace_back();
+    for (int position : front.updates)
+      for (int row = 0; row < block_rows_[order_.block_at[position]]; ++row)
+        rows.push_back(first_row_[order_.block_at[position]] + row);
+  }
+  panels_.resize(values);
+  pivots_.resize(order_.fronts.size());
+  for (std::size_t size : schedule_.arena_size) updates_.emplace_back(size);
 }
 
 void BlockLdlt::set_zero() {
@@ -81,130 +75,157 @@ BlockLdlt::Block BlockLdlt::edge_block(int edge) {
           block_rows_[edges_[edge].second]};
 }
 
-void BlockLdlt::assemble_front(const Front& front, std::vector<MatrixXd>& updates, MatrixXd& dense) const {
-  const int size = front.pivot_rows + front.update_rows;
-  dense.setZero(size, size);
-  using ConstBlock = Eigen::Map<const MatrixXd>;
-  for (std::size_t p = 0; p < front.pivots.size(); ++p) {
-    const int position = front.pivots[p], node = order_.block_at[position];
-    const int row = front.first_row[p], rows = block_rows_[node];
+FrontPanel BlockLdlt::panel(int f) const {
+  return {panels_.data() + panel_start_[f], order_.fronts[f].pivot_rows, order_.fronts[f].update_rows};
+}
+
+double* BlockLdlt::update_of(int f) {
+  return updates_[schedule_.lane_of[f]].data() + schedule_.update_start[f];
+}
+
+// Adds what falls into these columns of the parent's front.
+void BlockLdlt::add_child(int child, FrontRange wanted) {
+  const Front& from = order_.fronts[child];
+  const FrontPanel to = panel(from.parent);
+  const double* update = update_of(child);
+  double* parent_update = update_of(from.parent);
+  for (std::size_t q = 0; q < from.to_parent.size(); ++q) {
+    const Front::Run& columns = from.to_parent[q];
+    const int last = std::min(columns.to + columns.rows, wanted.end);
+    for (int column = std::max(columns.to, wanted.begin); column < last; ++column) {
+      const int shift = column - columns.to;
+      const double* source = update + static_cast<std::size_t>(columns.from + shift) * from.update_rows;
+      double* target =
+          column < to.pivots
+              ? to.at(0, column)
+              : parent_update + static_cast<std::size_t>(column - to.pivots) * to.updates - to.pivots;
+      for (std::size_t r = q; r < from.to_parent.size(); ++r) {
+        const Front::Run& rows = from.to_parent[r];
+        const int skip = r == q ? shift : 0, count = rows.rows - skip;
+        VectorXd::Map(target + rows.to + skip, count) += VectorXd::Map(source + rows.from + skip, count);
+      }
+    }
+  }
+}
+
+void BlockLdlt::assemble_columns(int f, FrontRange columns) {
+  const FrontPanel p = panel(f);
+  double* update = update_of(f);
+  for (int c = columns.begin; c < columns.end; ++c) {
+    if (c < p.pivots)
+      std::fill_n(p.at(c, c), p.rows() - c, 0.0);
+    else
+      std::fill_n(update + static_cast<std::size_t>(c - p.pivots) * (p.updates + 1), p.rows() - c, 0.0);
+  }
+  for (int child : order_.fronts[f].children) add_child(child, columns);
+}
+
+// The matrix' own entries, all of which stand in pivot columns.
+void BlockLdlt::add_entries(int f) {
+  const Front& front = order_.fronts[f];
+  const FrontPanel p = panel(f);
+  Eigen::Map<MatrixXd> dense(p.values, p.rows(), p.pivots);
+  for (std::size_t i = 0; i < front.pivots.size(); ++i) {
+    const int position = front.pivots[i], node = order_.block_at[position];
+    const int row = front.first_row[i], rows = block_rows_[node];
     dense.block(row, row, rows, rows) += ConstBlock(node_values_.data() + node_start_[node], rows, rows);
     for (int edge : edges_at_[position]) {
       const auto [a, b] = edges_[edge];
       const ConstBlock block(edge_values_.data() + edge_start_[edge], block_rows_[a], block_rows_[b]);
-      add_lower(dense, front_row(front, order_.position[a]), front_row(front, order_.position[b]), block);
+      const int at_a = front_row(front, order_.position[a]), at_b = front_row(front, order_.position[b]);
+      if (at_a >= at_b)
+        dense.block(at_a, at_b, block.rows(), block.cols()) += block;
+      else
+        dense.block(at_b, at_a, block.cols(), block.rows()) += block.transpose();
     }
-  }
-  for (int child : front.children) {
-    const std::vector<int>& to = order_.fronts[child].parent_row;
-    MatrixXd& update = updates[child];
-    for (Eigen::Index c = 0; c < update.cols(); ++c)
-      for (Eigen::Index r = c; r < update.rows(); ++r) dense(to[r], to[c]) += update(r, c);
-    update.resize(0, 0);
   }
 }
 
-// D's blocks of order 2 are indefinite by the choice of pivots, unless rounding says otherwise.
-void BlockLdlt::count_inertia(const Factor& factor) {
-  const auto n = static_cast<int>(factor.pivot.rows());
-  for (int c = 0; c < n;) {
-    const double d = factor.pivot(c, c);
-    if (factor.swaps[c] > 0) {
-      ++(d > 0 ? inertia_.positive : d < 0 ? inertia_.negative : inertia_.zero);
-      c += 1;
-      continue;
-    }
-    const double off = factor.pivot(c + 1, c), next = factor.pivot(c + 1, c + 1);
-    if (d * next - off * off < 0) {
-      ++inertia_.positive;
-      ++inertia_.negative;
-    } else {
-      (d + next > 0 ? inertia_.positive : inertia_.negative) += 2;
-    }
-    c += 2;
+// `share`: the team works on this one front together.
+bool BlockLdlt::factorise_front(int f, Inertia& inertia, bool share) {
+  const FrontPanel p = panel(f);
+  FrontPivots& pivots = pivots_[f];
+  const auto in_pieces = [&](FrontRange whole, int piece, auto&& act) {
+    const int pieces = (whole.size() + piece - 1) / piece;
+    const auto one = [&](int i) {
+      const int begin = whole.begin + i * piece;
+      act(FrontRange{begin, std::min(whole.end, begin + piece)});
+    };
+    if (share && team_)
+      team_->run(pieces, one);
+    else
+      for (int i = 0; i < pieces; ++i) one(i);
+  };
+  in_pieces({0, p.rows()}, kAssembledColumns, [&](FrontRange columns) { assemble_columns(f, columns); });
+  if (p.pivots == 0) return true;
+  add_entries(f);
+  for (int begin = 0; begin < p.pivots; begin += kPivotBlock) {
+    const FrontRange block{begin, std::min(p.pivots, begin + kPivotBlock)};
+    if (!factorise_block(p, pivots, block, inertia)) return false;
+    in_pieces({block.end, p.rows()}, kSolvedRows,
+              [&](FrontRange rows) { solve_rows(p, pivots, block, rows); });
+    in_pieces({block.end, p.pivots}, kUpdatedColumns, [&](FrontRange columns) {
+      update_columns(p, pivots, block, columns, p.at(columns.begin, columns.begin), p.rows());
+    });
   }
+  in_pieces({p.pivots, p.rows()}, kUpdatedColumns, [&](FrontRange columns) {
+    double* target = update_of(f) + static_cast<std::size_t>(columns.begin - p.pivots) * (p.updates + 1);
+    update_columns(p, pivots, {0, p.pivots}, columns, target, p.updates);
+  });
+  return true;
+}
+
+bool BlockLdlt::run(const std::vector<int>& fronts, Inertia& inertia, bool share) {
+  return std::all_of(fronts.begin(), fronts.end(), [&](int f) {
+    return !(cancelled_ && cancelled_()) && factorise_front(f, inertia, share);
+  });
 }
 
 bool BlockLdlt::factorise() {
+  std::vector<Inertia> found(kLanes + 1);
+  std::atomic<bool> regular = true;
+  const auto lane = [&](int l) {
+    if (!run(schedule_.lanes[l], found[l], false)) regular = false;
+  };
+  if (team_)
+    team_->run(kLanes, lane);
+  else
+    for (int l = 0; l < kLanes; ++l) lane(l);
+  if (!regular || !run(schedule_.top, found[kLanes], true)) return false;
   inertia_ = {};
-  std::vector<MatrixXd> updates(order_.fronts.size());
-  MatrixXd dense;
-  std::vector<double> work;
-  const double one = 1, minus_one = -1;
-  for (std::size_t f = 0; f < order_.fronts.size(); ++f) {
-    const Front& front = order_.fronts[f];
-    Factor& factor = factors_[f];
-    assemble_front(front, updates, dense);
-    const int k = front.pivot_rows, u = front.update_rows, size = k + u;
-    if (k == 0) {
-      updates[f] = dense;
-      continue;
-    }
-    factor.pivot = dense.topLeftCorner(k, k);
-    factor.swaps.resize(k);
-    const int work_size = std::max(64 * k, size);
-    work.resize(work_size);
-    int info = 0;
-    dsytrf_("L", &k, factor.pivot.data(), &k, factor.swaps.data(), work.data(), &work_size, &info);
-    if (info != 0 || !factor.pivot.allFinite()) return false;
-    count_inertia(factor);
-    if (u == 0) continue;
-
-    factor.coupling = dense.bottomLeftCorner(u, k).transpose();
-    if (k > kWidthForLevel3)
-      dsytrs2_("L", &k, &u, factor.pivot.data(), &k, factor.swaps.data(), factor.coupling.data(), &k,
-               work.data(), &info);
-    else
-      dsytrs_("L", &k, &u, factor.pivot.data(), &k, factor.swaps.data(), factor.coupling.data(), &k, &info);
-    if (info != 0) return false;
-    MatrixXd& update = updates[f];
-    update = dense.bottomRightCorner(u, u);
-    for (int column = 0; column < u; column += kUpdateColumns) {
-      const int columns = std::min(kUpdateColumns, u - column), rows = u - column;
-      dgemm_("N", "N", &rows, &columns, &k, &minus_one, &dense(k + column, 0), &size,
-             &factor.coupling(0, column), &k, &one, &update(column, column), &u);
-    }
+  for (const Inertia& part : found) {
+    inertia_.positive += part.positive;
+    inertia_.negative += part.negative;
+    inertia_.zero += part.zero;
   }
   return inertia_.zero == 0;
 }
 
 void BlockLdlt::solve_in_place(Eigen::Ref<MatrixXd> b) const {
   const int columns = static_cast<int>(b.cols());
-  MatrixXd pivot_part, update_part;
-  const auto for_updates = [&](const Front& front, auto&& act) {
-    int row = 0;
-    for (int position : front.updates) {
-      const int block = order_.block_at[position], rows = block_rows_[block];
-      act(b.middleRows(first_row_[block], rows), row, rows);
-      row += rows;
+  std::vector<double> values;
+  const auto with_front = [&](int f, auto&& solve) {
+    const Front& front = order_.fronts[f];
+    if (front.pivot_rows == 0) return;
+    const int first = first_row_[order_.block_at[front.pivots.front()]], k = front.pivot_rows;
+    values.resize(static_cast<std::size_t>(k + front.update_rows) * columns);
+    Eigen::Map<MatrixXd> local(values.data(), k + front.update_rows, columns);
+    for (int c = 0; c < columns; ++c) {
+      local.col(c).head(k) = b.col(c).segment(first, k);
+      for (int i = 0; i < front.update_rows; ++i) local(k + i, c) = b(update_rows_[f][i], c);
+    }
+    solve(panel(f), pivots_[f], values.data(), columns);
+    for (int c = 0; c < columns; ++c) {
+      b.col(c).segment(first, k) = local.col(c).head(k);
+      for (int i = 0; i < front.update_rows; ++i) b(update_rows_[f][i], c) = local(k + i, c);
     }
   };
-  for (std::size_t f = 0; f < order_.fronts.size(); ++f) {
-    const Front& front = order_.fronts[f];
-    if (front.pivot_rows == 0) continue;
-    const int first = first_row_[order_.block_at[front.pivots.front()]], k = front.pivot_rows;
-    pivot_part = b.middleRows(first, k);
-    if (front.update_rows > 0) {
-      update_part.noalias() = factors_[f].coupling.transpose() * pivot_part;
-      for_updates(front, [&](auto block, int row, int rows) { block -= update_part.middleRows(row, rows); });
-    }
-    int info = 0;
-    dsytrs_("L", &k, &columns, factors_[f].pivot.data(), &k, factors_[f].swaps.data(), pivot_part.data(), &k,
-            &info);
-    b.middleRows(first, k) = pivot_part;
-  }
-  for (std::size_t f = order_.fronts.size(); f-- > 0;) {
-    const Front& front = order_.fronts[f];
-    if (front.pivot_rows == 0 || front.update_rows == 0) continue;
-    update_part.resize(front.update_rows, columns);
-    for_updates(front, [&](auto block, int row, int rows) { update_part.middleRows(row, rows) = block; });
-    b.middleRows(first_row_[order_.block_at[front.pivots.front()]], front.pivot_rows).noalias() -=
-        factors_[f].coupling * update_part;
-  }
+  const int fronts = static_cast<int>(order_.fronts.size());
+  for (int f = 0; f < fronts; ++f) with_front(f, solve_forward);
+  for (int f = fronts; f-- > 0;) with_front(f, solve_backward);
 }
 
 VectorXd BlockLdlt::multiply(const VectorXd& x) const {
-  using ConstBlock = Eigen::Map<const MatrixXd>;
   VectorXd y = VectorXd::Zero(rows_);
   for (std::size_t i = 0; i < block_rows_.size(); ++i) {
     const int row = first_row_[i], rows = block_rows_[i];

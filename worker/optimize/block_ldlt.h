@@ -1,33 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Multifrontal L D L^T of a symmetric indefinite matrix made of dense blocks on a graph: one block a node,
-// one an edge. Within a front all pivots stand in one dense block, factorised by LAPACK's dsytrf (Bunch and
-// Kaufman 1977), so that the displacements and multipliers of a node, coupled as [0 K; K 0], pivot with one
-// another. No pivot is delayed to a later front: the caller refines iteratively and regularises where the
-// inertia is wrong.
+// one an edge. Within a front all pivots stand in one dense block (dense_front.h), so that the displacements
+// and multipliers of a node, coupled as [0 K; K 0], pivot with one another. No pivot is delayed to a later
+// front: the caller refines iteratively and regularises where the inertia is wrong.
 //
-// Deterministic when BLAS runs on one thread: use_one_blas_thread().
+// Guarantee: the same bits at any number of threads, when BLAS runs on one: use_one_blas_thread().
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
+#include <memory>
 #include <utility>
 #include <vector>
 
 #include "worker/optimize/block_ordering.h"
+#include "worker/optimize/dense_front.h"
+#include "worker/optimize/front_schedule.h"
+#include "worker/optimize/thread_team.h"
 
 namespace skinframe {
-
-struct Inertia {
-  int positive = 0, negative = 0, zero = 0;
-  bool operator==(const Inertia&) const = default;
-};
-
-void use_one_blas_thread();  // of the whole process; nothing where BLAS is not OpenBLAS
 
 class BlockLdlt {
  public:
   using Block = Eigen::Map<Eigen::MatrixXd>;
 
-  BlockLdlt(std::vector<int> block_rows, std::vector<std::pair<int, int>> edges);
+  // `team` is shared and may be null: one thread. `cancelled` is asked before each front.
+  BlockLdlt(std::vector<int> block_rows, std::vector<std::pair<int, int>> edges,
+            std::shared_ptr<ThreadTeam> team = nullptr, std::function<bool()> cancelled = {});
 
   int rows() const { return rows_; }
   int first_row(int node) const { return first_row_[node]; }  // of the node in vectors
@@ -38,7 +37,7 @@ class BlockLdlt {
   Block node_block(int node);
   Block edge_block(int edge);
 
-  // False when a pivot block is singular. The inertia is valid after true.
+  // False when a pivot block is singular or the caller has cancelled. The inertia is valid after true.
   bool factorise();
   const Inertia& inertia() const { return inertia_; }
 
@@ -46,24 +45,30 @@ class BlockLdlt {
   Eigen::VectorXd multiply(const Eigen::VectorXd& x) const;  // by the matrix as set, not by its factors
 
  private:
-  struct Factor {
-    Eigen::MatrixXd pivot;     // dsytrf's L and D
-    std::vector<int> swaps;    // dsytrf's ipiv
-    Eigen::MatrixXd coupling;  // pivot block^-1 times the coupling to the update rows
-  };
-  void assemble_front(const Front& front, std::vector<Eigen::MatrixXd>& updates,
-                      Eigen::MatrixXd& dense) const;
-  void count_inertia(const Factor& factor);
+  FrontPanel panel(int front) const;
+  double* update_of(int front);
+  void add_child(int child, FrontRange wanted);
+  void assemble_columns(int front, FrontRange columns);
+  void add_entries(int front);
+  bool factorise_front(int front, Inertia& inertia, bool share);
+  bool run(const std::vector<int>& fronts, Inertia& inertia, bool share);
 
   std::vector<int> block_rows_;
   std::vector<std::pair<int, int>> edges_;
   BlockOrdering order_;
+  FrontSchedule schedule_;
+  std::shared_ptr<ThreadTeam> team_;
+  std::function<bool()> cancelled_;
   int rows_ = 0;
   std::vector<int> first_row_;
   std::vector<std::size_t> node_start_, edge_start_;
   std::vector<double> node_values_, edge_values_;
-  std::vector<std::vector<int>> edges_at_;  // by the position of the end eliminated first
-  std::vector<Factor> factors_;             // one a front
+  std::vector<std::vector<int>> edges_at_;     // by the position of the end eliminated first
+  std::vector<std::vector<int>> update_rows_;  // of each front, in vectors
+  std::vector<std::size_t> panel_start_;
+  mutable std::vector<double> panels_;
+  std::vector<FrontPivots> pivots_;
+  std::vector<std::vector<double>> updates_;  // the schedule's arenas
   Inertia inertia_;
 };
 

@@ -185,9 +185,14 @@ std::vector<Front> make_fronts(const std::vector<Supernode>& nodes, const std::v
     Front& front = fronts[f];
     if (front.parent < 0) continue;
     fronts[front.parent].children.push_back(static_cast<int>(f));
+    int from = 0;
     for (int q : front.updates) {
-      const int first = front_row(fronts[front.parent], q);
-      for (int row = 0; row < rows_at[q]; ++row) front.parent_row.push_back(first + row);
+      const int to = front_row(fronts[front.parent], q), rows = static_cast<int>(rows_at[q]);
+      if (!front.to_parent.empty() && front.to_parent.back().to + front.to_parent.back().rows == to)
+        front.to_parent.back().rows += rows;
+      else if (rows > 0)
+        front.to_parent.push_back({from, to, rows});
+      from += rows;
     }
   }
   return fronts;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The order of elimination of a symmetric block matrix on a graph, and the fronts of its multifrontal
 // factorisation. Nested dissection (METIS, fixed seed) on the graph of blocks, elimination tree in postorder,
-// fundamental supernodes merged where that adds few zeros (Duff and Reid 1983; Liu 1992).
+// fundamental supernodes merged where that adds few zeros (Duff and Reid 1983; Liu 1992), wide ones cut into
+// a chain of fronts so that several threads can share the update of each.
 //
 // "Position" is a block's place in the order of elimination; "row" counts scalars.
 #pragma once
@@ -18,8 +19,17 @@ struct Front {
   int parent = -1;
   int pivot_rows = 0;
   int update_rows = 0;
-  std::vector<int> first_row;   // in the front, of each pivot and then each update
-  std::vector<int> parent_row;  // where each update row goes in the parent's front; ascending
+  std::vector<int> first_row;  // in the front, of each pivot and then each update
+  // Where the update rows go in the parent's front, both ascending.
+  struct Run {
+    int from, to, rows;
+  };
+  std::vector<Run> to_parent;
+
+  double work() const {  // multiplications, about
+    const double k = pivot_rows, u = update_rows;
+    return k * k * k / 3 + k * k * u + k * u * u;
+  }
 };
 
 struct BlockOrdering {
