@@ -16,7 +16,7 @@
 
 namespace skinframe {
 
-inline constexpr int kPivotBlock = 128;
+inline constexpr int kPivotBlock = 96;
 
 // Where a front stands: k columns of k + u rows, column-major; L (unit diagonal, not stored), beneath it W.
 struct FrontPanel {
