@@ -4,22 +4,26 @@
 //
 //  1. Slacks and duals of all inequalities but the dense rows are condensed: Sigma = z / s weighs their
 //  squares.
-//  2. The Hessian in A is diagonal: each A_j is eliminated within its strut. What is left couples only nodes
-//  that share a
-//     strut: one dense block a node, [d of each case | lambda of each case | x where it moves], factorised by
-//     BlockLdlt.
-//  3. The dense rows and the elastic scalar t border it: a Schur complement of a few rows.
+//  2. The Hessian in A is diagonal: each A_j is eliminated within its strut (strut_terms). What is left
+//  couples
+//     only nodes that share a strut: one dense block a node, [d of each case | lambda of each case | x where
+//     it moves], factorised by BlockLdlt.
+//  3. The dense rows and the elastic scalar t border it (dense_rows).
 //
 // The step is a descent direction for the barrier when the inertia is (primal, dual, 0): factorise() says
 // whether it is.
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
+#include <memory>
 #include <vector>
 
 #include "worker/optimize/block_ldlt.h"
+#include "worker/optimize/dense_rows.h"
 #include "worker/optimize/frame_program.h"
 #include "worker/optimize/iterate.h"
+#include "worker/optimize/strut_terms.h"
 
 namespace skinframe {
 
@@ -37,10 +41,12 @@ struct KktStep {
 
 class KktSystem {
  public:
-  KktSystem(const FrameProgram& program, const InequalityLayout& layout);  // both must outlive it
+  // Program and layout must outlive it. `team` and `cancelled` as for BlockLdlt.
+  KktSystem(const FrameProgram& program, const InequalityLayout& layout,
+            std::shared_ptr<ThreadTeam> team = nullptr, std::function<bool()> cancelled = {});
 
   void assemble(const Iterate& iterate, double barrier, const Regularisation& regularisation);
-  bool factorise();       // false: singular, or the wrong inertia
+  bool factorise();       // false: singular, the wrong inertia, or cancelled
   KktStep solve() const;  // refined against the assembled matrix
 
  private:
@@ -49,43 +55,29 @@ class KktSystem {
   struct Axis {
     int row, difference, sum;  // sum: -1 for none
   };
-  struct StrutTerms {
-    Eigen::MatrixXd hessian;   // in strut coordinates
-    Eigen::VectorXd slope;     // d(dL/dA)/d(coordinates)
-    Eigen::MatrixXd border;    // one column a dense row, and one for t
-    Eigen::VectorXd row_area;  // derivative of each dense row with respect to A
-    double curvature = 0;      // of A, with Sigma and regularisation
-  };
 
-  int coordinates(int strut) const;  // how many this strut has
-  void add_equilibrium(int strut, const Iterate& iterate, StrutTerms& terms) const;
-  void add_volume(int strut, double weight, const Iterate& iterate, StrutTerms& terms) const;
-  void add_strains(int strut, const Iterate& iterate, StrutTerms& terms);
-  void add_geometry(int strut, const Iterate& iterate, StrutTerms& terms) const;
-  void add_rows(int strut, const Iterate& iterate, StrutTerms& terms) const;
-  void eliminate_area(int strut, const ProgramVector& gradient, StrutTerms& terms);
+  void find_axes();
+  void eliminate_area(int strut, double gradient, StrutTerms& terms);
   void scatter(int strut, const StrutTerms& terms, const Eigen::VectorXd& right_hand_side);
   void add_nodes(const Iterate& iterate, const ProgramVector& gradient, const Regularisation& regularisation);
-  void back_substitute(const Eigen::VectorXd& y, const Eigen::VectorXd& r, Eigen::VectorXd& nodes,
-                       Eigen::VectorXd& border) const;
-  Eigen::VectorXd strut_coordinates(int strut, const ProgramVector& step) const;
+  void add_displacement_limit(int load_case, int node, const Iterate& iterate);
+  void hold_fixed_axes(int node);
+  void add_half_spaces(const Iterate& iterate);
+  ProgramVector step_of(const Eigen::VectorXd& nodes, const Eigen::VectorXd& border) const;
 
   const FrameProgram& program_;
   const InequalityLayout& layout_;
+  DenseRows rows_;
+  StrutTermsOf terms_of_;
   std::vector<std::vector<Axis>> axes_;  // of each node
-  std::vector<int> geometry_index_;      // of each strut in layout.geometry_struts, -1 for none
-  std::vector<std::vector<int>> strains_of_;
   BlockLdlt matrix_;
   Inertia wanted_;
-  int cases_, geometry_at_;  // first geometric strut coordinate: e, then x_a + x_b
-  bool has_elastic_;
+  int cases_;
   StrutTerms scratch_;
-  std::vector<Eigen::VectorXd> slopes_;  // kept for the areas' own step
+  std::vector<Eigen::VectorXd> slopes_;  // of each strut, kept for its area's own step
   Eigen::VectorXd curvatures_, area_gradient_;
-  Eigen::MatrixXd row_areas_;  // dense rows x struts
-  Eigen::VectorXd right_hand_side_, border_right_;
-  Eigen::MatrixXd border_, corner_;  // rows x (dense rows and t); square
-  Eigen::MatrixXd solved_border_, schur_;
+  Eigen::MatrixXd sums_;  // dense sums x struts
+  Eigen::VectorXd right_hand_side_;
 };
 
 }  // namespace skinframe
