@@ -4,13 +4,15 @@
 // Solves SizeOpt of a frame problem file with Ipopt and MUMPS, and prints one JSON object:
 //   "status": "optimal|acceptable|infeasible|iteration_limit|time_limit|failed", "ipopt_status": its own
 //   number, "volume_mm3", "areas_mm2": one a strut, "iterations", "factorisations" (0: not known),
-//   "kkt_error": Ipopt's, scaled, "seconds": {"start", "solve"}, "cpu_seconds": {"start", "solve"}.
+//   "kkt_error": Ipopt's, scaled, "peak_mb": resident memory, "seconds": {"start", "solve"}, "cpu_seconds":
+//   {"start", "solve"}.
 // Exit code 0 whatever the status, 2 wrong usage, 3 a problem that cannot be read.
 #include <chrono>
 #include <coin/IpIpoptApplication.hpp>
 #include <coin/IpSolveStatistics.hpp>
 #include <cstring>
 #include <ctime>
+#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -69,6 +71,13 @@ struct Clock {
   double cpu_seconds() const { return static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC; }
 };
 
+double peak_memory_mb() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind("VmHWM:", 0) == 0) return std::stod(line.substr(6)) / 1024;
+  return 0;
+}
+
 nlohmann::json solve(const oracle::FrameFile& frame, const Arguments& arguments) {
   const Clock start_clock;
   const oracle::Start start = oracle::uniform_start(frame);
@@ -98,6 +107,7 @@ nlohmann::json solve(const oracle::FrameFile& frame, const Arguments& arguments)
     result["iterations"] = statistics->IterationCount();
     result["kkt_error"] = worst;
   }
+  result["peak_mb"] = peak_memory_mb();
   result["seconds"] = {{"start", start_seconds}, {"solve", solve_clock.seconds()}};
   result["cpu_seconds"] = {{"start", start_cpu}, {"solve", solve_clock.cpu_seconds()}};
   return result;
