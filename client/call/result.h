@@ -10,7 +10,7 @@ namespace skinframe::client {
 
 enum class FailureKind {
   kUsage,        // the request is wrong: unknown printer or option, out of range, not built in that server
-  kInput,        // the mesh file: missing, unreadable, empty, too large
+  kInput,        // the mesh or problem file: missing, unreadable, empty, too large
   kUnreachable,  // no server at the address, or its queue stayed full; nothing is wrong with the request
   kNotFound,     // no such job or artifact
   kInterrupted,  // the caller's stop token

@@ -45,7 +45,7 @@ constexpr char kExamples[] =
     "  skinframe sample --list\n"
     "  skinframe check fish\n"
     "\n"
-    "Exit codes: 0 done, 2 wrong usage, 3 mesh unusable, 4 infeasible, 5 failed, 6 cancelled, 7 server "
+    "Exit codes: 0 done, 2 wrong usage, 3 file unusable, 4 infeasible, 5 failed, 6 cancelled, 7 server "
     "unreachable,\n"
     "8 only some printers, 9 unknown job. SKINFRAME_SERVER names the server, SKINFRAME_WORKER the worker "
     "program.";
@@ -122,7 +122,8 @@ class CommandLine {
         verb("run", "One command: starts a server and a worker here, runs the job, stops them",
              "  skinframe run fish.obj --printer sinterstation-hiq --size 200 --out fish\n"
              "  skinframe run fish.obj --printer sinterstation-hiq --printer makerbot-replicator-2 \\\n"
-             "      --size 140 --load side:top:20,0,0 --out fish",
+             "      --size 140 --load side:top:20,0,0 --out fish\n"
+             "  skinframe run fish/sinterstation-hiq/frame.json --out again      the optimiser alone",
              [this] { return run(global_, run_); });
     add_job_options(sub, run_.job);
     sub.add_option("--out", run_.out, "Folder for the results")->required();
@@ -131,19 +132,21 @@ class CommandLine {
   }
 
   void add_submit() {
-    CLI::App& sub =
-        verb("submit", "Upload a mesh and submit a job; prints the job's id",
-             "  skinframe submit fish.obj --printer sinterstation-hiq --size 200\n"
-             "  skinframe submit fish.obj --printer sinterstation-hiq --watch --out fish\n"
-             "  skinframe submit fish.obj --printer sinterstation-hiq --load pinch:0,-30,80:0,10,0 \\\n"
-             "      --load pinch:0,30,80:0,-10,0 --label order=4711 --deadline 15m",
-             [this] {
-               if (!submit_.out.empty() && !submit_.watch) {
-                 return tell({FailureKind::kUsage,
-                              "--out needs --watch; or fetch the files later with `skinframe download`"});
-               }
-               return submit(global_, submit_);
-             });
+    CLI::App& sub = verb(
+        "submit", "Upload a mesh or a frame problem and submit a job; prints the job's id",
+        "  skinframe submit fish.obj --printer sinterstation-hiq --size 200\n"
+        "  skinframe submit fish.obj --printer sinterstation-hiq --watch --out fish\n"
+        "  skinframe submit fish.obj --printer sinterstation-hiq --load pinch:0,-30,80:0,10,0 \\\n"
+        "      --load pinch:0,30,80:0,-10,0 --label order=4711 --deadline 15m\n"
+        "  skinframe submit fish.obj --printer sinterstation-hiq --load side:top:25,0,0 --warm-start JOB\n"
+        "  skinframe submit problem.json --watch --out solved",
+        [this] {
+          if (!submit_.out.empty() && !submit_.watch) {
+            return tell({FailureKind::kUsage,
+                         "--out needs --watch; or fetch the files later with `skinframe download`"});
+          }
+          return submit(global_, submit_);
+        });
     add_job_options(sub, submit_.job);
     sub.add_option("--request-id", submit_.job.request_id,
                    "Your own id of this submission: sent twice it makes one job (default: random)");

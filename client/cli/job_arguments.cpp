@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "client/cli/load_option.h"
+#include "client/transfer/input_kind.h"
 
 namespace skinframe::client {
 namespace {
@@ -67,9 +68,11 @@ std::string mesh_name(const std::string& path) {
 }  // namespace
 
 void add_job_options(CLI::App& verb, JobArguments& a) {
-  verb.add_option("MESH", a.mesh, "Mesh file: STL, OBJ, PLY or OFF")->required();
-  verb.add_option("--printer", a.printers, "Printer id (see `skinframe printers`); repeat for several")
-      ->required()
+  verb.add_option("FILE", a.mesh,
+                  "Mesh (STL, OBJ, PLY or OFF), or a frame problem (JSON), which takes no option of a mesh")
+      ->required();
+  verb.add_option("--printer", a.printers,
+                  "Printer id (see `skinframe printers`); repeat for several; a mesh needs one at least")
       ->allow_extra_args(false);
   verb.add_option("--material", a.materials,
                   "Material id, one for all printers or one for each; the printer's default")
@@ -94,6 +97,8 @@ void add_job_options(CLI::App& verb, JobArguments& a) {
   verb.add_option("--displacement-limit", a.displacement_limit_mm,
                   "Largest displacement in mm (default 0.05)");
   verb.add_option("--seed", a.seed, "Same seed, same result (default 1)");
+  verb.add_option("--warm-start", a.warm_start,
+                  "Start from the frame of that earlier JOB of the same mesh, wherever it still fits");
   verb.add_option("--label", a.labels, "KEY=VALUE, to find the job by; repeatable")->allow_extra_args(false);
   verb.add_option("--priority", a.priority, "-100 .. 100, higher runs earlier");
   verb.add_option("--deadline", a.deadline, "Give up after that time from submission: 90s, 15m, 2h");
@@ -105,6 +110,11 @@ Result<v1::SubmitJobRequest> to_request(const JobArguments& a) {
   request.set_validate_only(a.validate_only);
   v1::JobSpec& spec = *request.mutable_spec();
   spec.set_mesh_name(mesh_name(a.mesh));
+  if (a.printers.empty() && input_kind(a.mesh) == InputKind::kMesh) {
+    return Failure{
+        FailureKind::kUsage,
+        "--printer is required with a mesh; `skinframe printers` lists those that the server knows"};
+  }
   if (a.materials.size() > 1 && a.materials.size() != a.printers.size()) {
     return Failure{FailureKind::kUsage,
                    fmt::format("--material is given {} times for {} printers; give it once for all "
@@ -122,6 +132,7 @@ Result<v1::SubmitJobRequest> to_request(const JobArguments& a) {
     *spec.add_loads() = *std::move(load);
   }
   *spec.mutable_options() = options_of(a);
+  spec.set_warm_start_job_id(a.warm_start);
   for (const std::string& text : a.labels) {
     auto label = parse_label(text);
     if (!label) return label.failure();

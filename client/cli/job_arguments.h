@@ -18,7 +18,7 @@ class App;
 namespace skinframe::client {
 
 struct JobArguments {
-  std::string mesh;
+  std::string mesh;  // or a frame problem
   std::vector<std::string> printers;
   std::vector<std::string> materials;  // none, one for all printers, or one for each
   std::vector<std::string> loads;
@@ -32,13 +32,14 @@ struct JobArguments {
   std::int32_t priority = 0;
   std::string deadline;
   std::string request_id;
+  std::string warm_start;  // an earlier job's id
   bool validate_only = false;
 };
 
-// Adds MESH and all options of a job to a verb.
+// Adds FILE and all options of a job to a verb.
 void add_job_options(CLI::App& verb, JobArguments& arguments);
 
-// All of the request but the mesh's hash. kUsage names the option.
+// All of the request but the file's hash. kUsage names the option.
 Result<v1::SubmitJobRequest> to_request(const JobArguments& arguments);
 
 }  // namespace skinframe::client

@@ -19,6 +19,7 @@
 #include "client/present/progress_display.h"
 #include "client/present/words.h"
 #include "client/transfer/download.h"
+#include "client/transfer/input_kind.h"
 #include "client/transfer/upload.h"
 
 namespace skinframe::client {
@@ -31,9 +32,13 @@ void print_json(const Json& json) { fmt::print("{}\n", to_text(json)); }
 // Upload and submission: all that happens before there is a job.
 Result<v1::SubmitJobResponse> upload_and_submit(const Connection& connection, const JobArguments& job,
                                                 v1::SubmitJobRequest request) {
-  const auto mesh = upload_mesh(connection, job.mesh);
-  if (!mesh) return mesh.failure();
-  request.mutable_spec()->set_mesh_sha256(mesh->sha256);
+  const auto file = upload_input(connection, job.mesh);
+  if (!file) return file.failure();
+  if (input_kind(job.mesh) == InputKind::kFrameProblem) {
+    request.mutable_spec()->set_frame_problem_sha256(file->sha256);
+  } else {
+    request.mutable_spec()->set_mesh_sha256(file->sha256);
+  }
   return submit_job(connection, std::move(request));
 }
 
@@ -104,7 +109,7 @@ Result<Connection> open(const GlobalArguments& global, const Interrupts& interru
 ExitCode run(const GlobalArguments& global, const RunArguments& arguments) {
   const auto request = to_request(arguments.job);
   if (!request) return tell(request.failure());
-  if (const auto mesh = digest_mesh_file(arguments.job.mesh); !mesh) return tell(mesh.failure());
+  if (const auto file = digest_input_file(arguments.job.mesh); !file) return tell(file.failure());
   Interrupts interrupts;
   EmbeddedFarm farm(arguments.data, interrupts.stop_source());
   const ExitCode code = run_on(farm, interrupts, global, arguments, *request);

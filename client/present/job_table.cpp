@@ -38,7 +38,10 @@ std::string or_dash(bool present, double value, const char* format) {
   return present ? fmt::format(fmt::runtime(format), value) : "-";
 }
 
+bool is_frame_problem(const v1::Job& job) { return job.spec().has_frame_problem_sha256(); }
+
 std::string printer_names(const v1::Job& job) {
+  if (is_frame_problem(job)) return "(frame problem)";
   std::string out;
   for (const auto& printer : job.spec().printers()) {
     if (!out.empty()) out += ',';
@@ -54,9 +57,32 @@ std::string state_and_reason(const v1::Job& job) {
   return out;
 }
 
+std::string frame_table(const v1::FrameResult& frame) {
+  std::vector<Row> rows = {{"stage", "frame mm3", "nodes", "struts", "of size"}};
+  double sized = 0;  // the stage before is at the lower bounds, where no limit need hold
+  for (const v1::FrameStage& stage : frame.stages()) {
+    if (stage.stage() == "size") sized = stage.frame_volume_mm3();
+    rows.push_back({one_line(stage.stage()), fmt::format("{:.6g}", stage.frame_volume_mm3()),
+                    fmt::format("{}", stage.nodes()), fmt::format("{}", stage.struts()),
+                    or_dash(sized > 0, 100 * stage.frame_volume_mm3() / sized, "{:.1f} %")});
+  }
+  std::string out = table(rows, 1);
+  out += fmt::format("displacement {}, axial ratio {:.4f}, shear ratio {:.4f} ({} model), {} iterations\n",
+                     or_dash(frame.has_max_displacement_mm(), frame.max_displacement_mm(), "{:.6g} mm"),
+                     frame.max_axial_ratio(), frame.max_shear_ratio(), one_line(frame.mechanics()),
+                     frame.iterations());
+  if (frame.has_lower_bound_mm3())
+    out +=
+        fmt::format("no frame of these nodes and struts has less than {:.6g} mm3\n", frame.lower_bound_mm3());
+  if (frame.has_best_reachable_displacement_mm())
+    out += fmt::format("best reachable displacement {:.6g} mm\n", frame.best_reachable_displacement_mm());
+  return out;
+}
+
 }  // namespace
 
 std::string result_table(const v1::Job& job) {
+  if (job.has_frame()) return frame_table(job.frame());
   std::vector<Row> rows = {{"printer", "material", "nodes/struts", "skin mm3", "frame mm3", "total mm3",
                             "solid mm3", "ratio", "printed mm3", "weight", "displacement*"}};
   for (const v1::PrinterResult& printer : job.printers()) {
@@ -90,13 +116,15 @@ std::string job_description(const v1::Job& job) {
   std::vector<Row> rows = {
       {"job", one_line(job.job_id())},
       {"state", state_and_reason(job) + (job.cancel_requested() ? " (cancel requested)" : "")},
-      {"mesh", one_line(job.spec().mesh_name())},
-      {"printers", printer_names(job)},
+      {is_frame_problem(job) ? "problem" : "mesh", one_line(job.spec().mesh_name())},
       {"created", time_text(job.create_time())},
       {"started", time_text(job.start_time())},
       {"ended", time_text(job.end_time())},
       {"attempt", fmt::format("{}", job.attempt())},
       {"events", fmt::format("{}", job.last_sequence())}};
+  if (!is_frame_problem(job)) rows.insert(rows.begin() + 3, {"printers", printer_names(job)});
+  if (!job.spec().warm_start_job_id().empty())
+    rows.push_back({"starts from", one_line(job.spec().warm_start_job_id())});
   if (!job.detail().empty()) rows.push_back({"detail", one_line(job.detail())});
   std::string out = table(rows, 2);
   for (const v1::ResultFile& file : job.files()) {
@@ -113,7 +141,7 @@ std::string job_description(const v1::Job& job) {
 }
 
 std::string job_list(const std::vector<v1::Job>& jobs) {
-  std::vector<Row> rows = {{"job", "state", "created", "mesh", "printers"}};
+  std::vector<Row> rows = {{"job", "state", "created", "file", "printers"}};
   for (const v1::Job& job : jobs) {
     rows.push_back({one_line(job.job_id()), state_and_reason(job), time_text(job.create_time()),
                     one_line(job.spec().mesh_name()), printer_names(job)});

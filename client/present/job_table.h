@@ -10,8 +10,8 @@
 
 namespace skinframe::client {
 
-// The figures of the paper's Table 2, a row a printer; printers without statistics are told below it. Ends
-// with a line end, or empty when there is no printer.
+// The figures of the paper's Table 2, a row a printer; printers without statistics are told below it. Of a
+// frame problem: a row a stage. Ends with a line end, or empty when there is neither.
 std::string result_table(const v1::Job& job);
 
 // Why the job ended as it did, for stderr: a line for the job and one for each printer with a reason of its

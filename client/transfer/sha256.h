@@ -30,6 +30,6 @@ struct FileDigest {
 };
 
 // kInput when the file is missing, no regular file, unreadable or empty.
-Result<FileDigest> digest_mesh_file(const std::filesystem::path& path);
+Result<FileDigest> digest_input_file(const std::filesystem::path& path);
 
 }  // namespace skinframe::client

@@ -50,8 +50,8 @@ bool worth_another(const grpc::Status& status) {
 
 }  // namespace
 
-Result<FileDigest> upload_mesh(const Connection& connection, const std::filesystem::path& path) {
-  auto digest = digest_mesh_file(path);
+Result<FileDigest> upload_input(const Connection& connection, const std::filesystem::path& path) {
+  auto digest = digest_input_file(path);
   if (!digest) return digest;
   const auto stub = v1::ArtifactService::NewStub(connection.channel);
   Backoff backoff(std::chrono::milliseconds(100), std::chrono::milliseconds(2000));

@@ -8,9 +8,9 @@
 
 namespace skinframe::client {
 
-// The mesh file is on the server, whole and durable, or: kInput (see digest_mesh_file; also a size that the
-// server refuses, a file that changed under our hands), kUnreachable, kInterrupted. What the server has
-// already costs nothing, an interrupted upload goes on where it stopped.
-Result<FileDigest> upload_mesh(const Connection& connection, const std::filesystem::path& path);
+// The mesh or frame problem file is on the server, whole and durable, or: kInput (see digest_input_file; also
+// a size that the server refuses, a file that changed under our hands), kUnreachable, kInterrupted. What the
+// server has already costs nothing, an interrupted upload goes on where it stopped.
+Result<FileDigest> upload_input(const Connection& connection, const std::filesystem::path& path);
 
 }  // namespace skinframe::client

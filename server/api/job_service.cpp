@@ -42,18 +42,21 @@ absl::Status JobService::submit(grpc::CallbackServerContext& context, const v1::
                                 v1::SubmitJobResponse& response) {
   if (auto status = validate_request_id(request.request_id()); !status.ok()) return status;
   if (auto status = validate_spec(request.spec(), parts_.catalog); !status.ok()) return status;
-  const auto mesh = parts_.artifacts.stat(request.spec().mesh_sha256());
-  if (!mesh.ok()) return mesh.status();
-  if (!mesh->complete) {
-    return absl::FailedPreconditionError(
-        fmt::format("the mesh {} is not uploaded; upload it first", request.spec().mesh_sha256()));
+  const auto input = parts_.artifacts.stat(input_sha256(request.spec()));
+  if (!input.ok()) return input.status();
+  if (!input->complete) {
+    return absl::FailedPreconditionError(fmt::format("the {} {} is not uploaded; upload it first",
+                                                     input_word(request.spec()),
+                                                     input_sha256(request.spec())));
   }
+  JobRecord record = new_record(request);
+  if (auto status = take_warm_start(record); !status.ok()) return status;
   if (request.validate_only()) {
     for (std::string& check : checks_that_hold(request.spec())) response.add_checks(std::move(check));
     return absl::OkStatus();
   }
   auto created =
-      parts_.store.create(decide_submit(new_record(request), parts_.clock.now()), parts_.queue_limit);
+      parts_.store.create(decide_submit(std::move(record), parts_.clock.now()), parts_.queue_limit);
   if (absl::IsResourceExhausted(created.status()))
     context.AddTrailingMetadata("retry-after-ms", kRetryAfterMs);
   if (!created.ok()) return created.status();
@@ -62,6 +65,26 @@ absl::Status JobService::submit(grpc::CallbackServerContext& context, const v1::
     // The job is durable whatever comes of this: a failure to count is not one to submit.
     const auto before = parts_.store.queued_before(response.job().job_id());
     if (before.ok()) response.set_queued_before(static_cast<std::int32_t>(*before));
+  }
+  return absl::OkStatus();
+}
+
+// The earlier job's files by their hashes, so that it may be deleted while this one waits.
+absl::Status JobService::take_warm_start(JobRecord& record) {
+  const std::string& id = record.job.spec().warm_start_job_id();
+  if (id.empty()) return absl::OkStatus();
+  const auto earlier = parts_.store.get(id);
+  if (!earlier.ok())
+    return absl::Status(earlier.status().code(),
+                        fmt::format("warm_start_job_id: {}", std::string(earlier.status().message())));
+  if (auto status = permit_warm_start(*earlier, record.job.spec()); !status.ok()) return status;
+  for (const v1::ResultFile& file : earlier->job.files()) {
+    const auto facts = parts_.artifacts.stat(file.sha256());
+    if (!facts.ok()) return facts.status();
+    if (!facts->complete)
+      return absl::FailedPreconditionError(
+          fmt::format("warm_start_job_id: file {} of job {} is not there any more", file.path(), id));
+    record.warm_start_files.push_back(file);
   }
   return absl::OkStatus();
 }

@@ -31,6 +31,7 @@ class JobService final : public v1::JobService::CallbackService {
                       v1::SubmitJobResponse& response);
   absl::Status list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
   JobRecord new_record(const v1::SubmitJobRequest& request);
+  absl::Status take_warm_start(JobRecord& record);
 
   Parts parts_;
 };

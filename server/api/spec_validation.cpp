@@ -20,6 +20,7 @@ constexpr int kMostPrinters = 16;
 constexpr int kMostLoads = 64;
 constexpr int kMostLabels = 16;
 constexpr std::size_t kLongestName = 255;
+constexpr std::size_t kLongestJobId = 64;
 constexpr double kFarthestPoint_mm = 10'000;
 constexpr double kLargestForce_n = 1e6;
 constexpr std::int64_t kLongestDeadline_s = 365LL * 24 * 3600;
@@ -44,10 +45,18 @@ bool made_of(std::string_view text, std::string_view extra, bool upper_case) {
 bool outside(double value, double low, double high) { return !(value >= low && value <= high); }
 
 absl::Status check_input(const v1::JobSpec& spec) {
-  if (spec.input_case() == v1::JobSpec::kFrameProblemSha256) return not_built("frame_problem_sha256");
-  if (spec.input_case() != v1::JobSpec::kMeshSha256) return invalid("spec.mesh_sha256 is missing");
-  if (!is_sha256(spec.mesh_sha256()))
-    return invalid("spec.mesh_sha256 must be 64 lower-case hexadecimal digits");
+  switch (spec.input_case()) {
+    case v1::JobSpec::kMeshSha256:
+      if (!is_sha256(spec.mesh_sha256()))
+        return invalid("spec.mesh_sha256 must be 64 lower-case hexadecimal digits");
+      break;
+    case v1::JobSpec::kFrameProblemSha256:
+      if (!is_sha256(spec.frame_problem_sha256()))
+        return invalid("spec.frame_problem_sha256 must be 64 lower-case hexadecimal digits");
+      break;
+    case v1::JobSpec::INPUT_NOT_SET:
+      return invalid("spec.mesh_sha256 is missing, and so is spec.frame_problem_sha256");
+  }
   if (spec.mesh_name().size() > kLongestName) {
     return invalid("spec.mesh_name has {} bytes, at most {} are allowed", spec.mesh_name().size(),
                    kLongestName);
@@ -72,6 +81,21 @@ absl::Status check_printers(const v1::JobSpec& spec, const Catalog& catalog) {
       return invalid("printer \"{}\" is named twice", printer.printer_id());
     }
   }
+  return absl::OkStatus();
+}
+
+// The problem file carries all that these would say, and what it says would be contradicted in silence.
+absl::Status check_frame_problem_stands_alone(const v1::JobSpec& spec) {
+  constexpr char kWhy[] = "a frame problem carries its own material, bounds, loads and stages";
+  if (spec.printers_size() > 0)
+    return invalid("spec.printers names \"{}\", but {}", spec.printers(0).printer_id(), kWhy);
+  if (spec.loads_size() > 0) return invalid("spec.loads[0] is there, but {}", kWhy);
+  const v1::JobOptions& options = spec.options();
+  std::vector<const google::protobuf::FieldDescriptor*> set;
+  options.GetReflection()->ListFields(options, &set);
+  if (!set.empty()) return invalid("options.{} is there, but {}", set.front()->name(), kWhy);
+  if (!spec.warm_start_job_id().empty())
+    return invalid("spec.warm_start_job_id is there, but a warm start is of jobs of one mesh");
   return absl::OkStatus();
 }
 
@@ -195,17 +219,35 @@ absl::Status validate_spec(const v1::JobSpec& spec, const Catalog& catalog) {
     return invalid("spec has {} bytes, at most {} are allowed", bytes, kLargestSpecBytes);
   }
   if (auto status = check_input(spec); !status.ok()) return status;
-  if (auto status = check_printers(spec, catalog); !status.ok()) return status;
-  if (auto status = check_loads(spec); !status.ok()) return status;
-  if (auto status = check_options(spec.options()); !status.ok()) return status;
+  if (spec.has_frame_problem_sha256()) {
+    if (auto status = check_frame_problem_stands_alone(spec); !status.ok()) return status;
+  } else {
+    if (auto status = check_printers(spec, catalog); !status.ok()) return status;
+    if (auto status = check_loads(spec); !status.ok()) return status;
+    if (auto status = check_options(spec.options()); !status.ok()) return status;
+  }
   if (auto status = check_labels(spec); !status.ok()) return status;
   if (auto status = check_schedule(spec); !status.ok()) return status;
-  if (!spec.warm_start_job_id().empty()) return not_built("warm_start_job_id");
+  if (spec.warm_start_job_id().size() > kLongestJobId)
+    return invalid("spec.warm_start_job_id has {} bytes, at most {} are allowed",
+                   spec.warm_start_job_id().size(), kLongestJobId);
   return absl::OkStatus();
 }
 
+const std::string& input_sha256(const v1::JobSpec& spec) {
+  return spec.has_frame_problem_sha256() ? spec.frame_problem_sha256() : spec.mesh_sha256();
+}
+
+const char* input_word(const v1::JobSpec& spec) {
+  return spec.has_frame_problem_sha256() ? "frame problem" : "mesh";
+}
+
 std::vector<std::string> checks_that_hold(const v1::JobSpec& spec) {
-  std::vector<std::string> checks = {"the mesh is uploaded"};
+  const char* input = input_word(spec);
+  std::vector<std::string> checks = {fmt::format("the {} is uploaded", input)};
+  if (!spec.warm_start_job_id().empty())
+    checks.push_back(fmt::format("job {} is of the same mesh, succeeded, and its files are there",
+                                 spec.warm_start_job_id()));
   for (const v1::PrinterRequest& printer : spec.printers()) {
     checks.push_back(fmt::format("printer {} and its material are known", printer.printer_id()));
   }

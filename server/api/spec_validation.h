@@ -13,11 +13,15 @@
 
 namespace skinframe::server {
 
-// INVALID_ARGUMENT, or UNIMPLEMENTED for what the API has and this version does not build. Meshes are not
-// opened: what is wrong inside one is the worker's to say.
+// INVALID_ARGUMENT, or UNIMPLEMENTED for what the API has and this version does not build. Meshes and frame
+// problems are not opened: what is wrong inside one is the worker's to say.
 absl::Status validate_spec(const v1::JobSpec& spec, const Catalog& catalog);
 
-// What validate_spec has found good, a sentence each.
+// The artifact that the job works on, and what it is called: "mesh" or "frame problem". Of a valid spec.
+const std::string& input_sha256(const v1::JobSpec& spec);
+const char* input_word(const v1::JobSpec& spec);
+
+// What SubmitJob has found good, a sentence each.
 std::vector<std::string> checks_that_hold(const v1::JobSpec& spec);
 
 // 1 .. 64 of [A-Za-z0-9._-], or empty.

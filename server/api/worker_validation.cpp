@@ -18,6 +18,7 @@ constexpr std::size_t kLongestPath = 255;
 constexpr int kMostProgress = 100;
 constexpr int kMostPrinters = 16;
 constexpr int kMostFiles = 1000;
+constexpr int kMostFrameStages = 16;
 
 template <class... Args>
 absl::Status invalid(fmt::format_string<Args...> format, Args&&... args) {
@@ -53,6 +54,16 @@ absl::Status check_printer_is_asked_for(const v1::JobSpec& spec, const std::stri
   });
   if (found) return absl::OkStatus();
   return invalid("printer_id \"{}\" is not one that the job asks for", printer_id);
+}
+
+absl::Status check_frame(const v1::FrameResult& frame) {
+  if (frame.stages_size() > kMostFrameStages)
+    return invalid("frame.stages has {} entries, at most {} are allowed", frame.stages_size(),
+                   kMostFrameStages);
+  for (const v1::FrameStage& stage : frame.stages())
+    if (auto s = check_word("frame.stages.stage", stage.stage()); !s.ok()) return s;
+  if (auto s = check_word("frame.mechanics", frame.mechanics()); !s.ok()) return s;
+  return check_word("frame.violated_constraint", frame.violated_constraint());
 }
 
 // Relative, each part a plain name: it becomes a file below the client's folder.
@@ -119,6 +130,7 @@ absl::Status validate_complete(const v1::CompleteRequest& request) {
     if (!is_sha256(file.sha256())) return invalid("files.sha256 of \"{}\" is not a SHA-256", file.path());
     if (!paths.insert(file.path()).second) return invalid("files.path \"{}\" is there twice", file.path());
   }
+  if (auto status = check_frame(request.frame()); !status.ok()) return status;
   return check_printers(request.printers());
 }
 
@@ -134,6 +146,8 @@ absl::Status printers_are_the_jobs(const v1::JobSpec& spec, const v1::HeartbeatR
 }
 
 absl::Status printers_are_the_jobs(const v1::JobSpec& spec, const v1::CompleteRequest& request) {
+  if (request.has_frame() && !spec.has_frame_problem_sha256())
+    return invalid("frame is there, but the job is of a mesh");
   for (const v1::PrinterResult& printer : request.printers()) {
     if (auto status = check_printer_is_asked_for(spec, printer.printer_id()); !status.ok()) return status;
   }

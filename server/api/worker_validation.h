@@ -12,7 +12,8 @@ absl::Status validate_lease(const v1::LeaseRequest& request);
 absl::Status validate_heartbeat(const v1::HeartbeatRequest& request);
 absl::Status validate_complete(const v1::CompleteRequest& request);
 
-// INVALID_ARGUMENT: a printer that the job does not ask for. Progress without a printer is all printers'.
+// INVALID_ARGUMENT: a printer that the job does not ask for, a frame's result of a job of a mesh. Progress
+// without a printer is all printers'.
 absl::Status printers_are_the_jobs(const v1::JobSpec& spec, const v1::HeartbeatRequest& request);
 absl::Status printers_are_the_jobs(const v1::JobSpec& spec, const v1::CompleteRequest& request);
 

@@ -203,6 +203,7 @@ Decision decide_complete(const JobRecord& record, const v1::CompleteRequest& req
   take_printer_results(change, request.printers(), now);
   *change.record.job.mutable_printers() = request.printers();  // all of them, in the worker's order
   *change.record.job.mutable_files() = request.files();
+  if (request.has_frame()) *change.record.job.mutable_frame() = request.frame();
   const bool succeeded = request.state() == v1::JOB_STATE_SUCCEEDED;
   move_job(change, succeeded ? Trigger::kSucceeded : Trigger::kFailed, request.reason(), request.detail(),
            now);
@@ -224,6 +225,21 @@ Decision decide_deadline(const JobRecord& record, Time now) {
   move_job(change, Trigger::kDeadlinePassed, v1::REASON_TIMED_OUT,
            deadline_detail(record) + " while it was queued", now);
   return change;
+}
+
+absl::Status permit_warm_start(const JobRecord& earlier, const v1::JobSpec& spec) {
+  const v1::Job& job = earlier.job;
+  if (!job.spec().has_mesh_sha256() || job.spec().mesh_sha256() != spec.mesh_sha256()) {
+    return absl::InvalidArgumentError(
+        fmt::format("warm_start_job_id: job {} is of {}; a warm start needs one of the same mesh",
+                    job.job_id(), job.spec().has_mesh_sha256() ? "another mesh" : "a frame problem"));
+  }
+  if (job.state() != v1::JOB_STATE_SUCCEEDED) {
+    return absl::FailedPreconditionError(
+        fmt::format("warm_start_job_id: job {} is {}; a warm start needs one that SUCCEEDED", job.job_id(),
+                    state_name(job.state())));
+  }
+  return absl::OkStatus();
 }
 
 absl::Status permit_delete(const JobRecord& record) {

@@ -54,6 +54,10 @@ Decision decide_lease_expired(const JobRecord& record, Time now, const AttemptPo
 // is stopped through its heartbeat or its lease.
 Decision decide_deadline(const JobRecord& record, Time now);
 
+// Whether a job may start from this earlier one. FAILED_PRECONDITION: it has not succeeded. INVALID_ARGUMENT:
+// it is of another mesh, or of a frame problem.
+absl::Status permit_warm_start(const JobRecord& earlier, const v1::JobSpec& spec);
+
 // DeleteJob: FAILED_PRECONDITION unless the job has ended.
 absl::Status permit_delete(const JobRecord& record);
 

@@ -32,6 +32,7 @@ struct JobRecord {
   std::string spec_digest;  // SHA-256 of the canonical spec; tells a repeated request from another one
   std::vector<v1::PrinterProfile> printers;
   std::vector<v1::MaterialProfile> materials;
+  std::vector<v1::ResultFile> warm_start_files;  // of spec.warm_start_job_id, copied at submission
   std::optional<Time> deadline;
   Time not_before{};      // a queued job is not leased earlier: the backoff after a lost attempt
   int lost_attempts = 0;  // attempts that ended without a result

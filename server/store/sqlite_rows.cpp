@@ -15,6 +15,7 @@ std::string profiles_blob(const JobRecord& record) {
   v1::Assignment profiles;
   for (const auto& printer : record.printers) *profiles.add_printers() = printer;
   for (const auto& material : record.materials) *profiles.add_materials() = material;
+  for (const auto& file : record.warm_start_files) *profiles.add_warm_start_files() = file;
   return profiles.SerializeAsString();
 }
 
@@ -22,6 +23,7 @@ std::string results_blob(const JobRecord& record) {
   v1::Job results;
   *results.mutable_printers() = record.job.printers();
   *results.mutable_files() = record.job.files();
+  if (record.job.has_frame()) *results.mutable_frame() = record.job.frame();
   return results.SerializeAsString();
 }
 
@@ -97,6 +99,7 @@ absl::StatusOr<JobRow> read_row(const SqliteStatement& row) {
   job.set_job_id(job_id);
   record.printers.assign(profiles.printers().begin(), profiles.printers().end());
   record.materials.assign(profiles.materials().begin(), profiles.materials().end());
+  record.warm_start_files.assign(profiles.warm_start_files().begin(), profiles.warm_start_files().end());
   if (!row.is_null(column)) *job.mutable_start_time() = to_timestamp(from_ms(row.integer(column)));
   ++column;
   if (!row.is_null(column)) *job.mutable_end_time() = to_timestamp(from_ms(row.integer(column)));

@@ -181,13 +181,40 @@ Result<json> options_json(const v1::JobOptions& o) {
               {"seed", o.has_seed() ? o.seed() : std::uint64_t{1}}};
 }
 
+std::string text_of(const json& request) {
+  return request.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
 }  // namespace
 
-Result<std::string> job_request_json(const v1::Assignment& assignment, const std::filesystem::path& mesh_path,
+const std::string& input_sha256(const v1::JobSpec& spec) {
+  return spec.has_frame_problem_sha256() ? spec.frame_problem_sha256() : spec.mesh_sha256();
+}
+
+std::map<std::string, v1::ResultFile> choose_warm_start_files(const v1::Assignment& assignment) {
+  constexpr std::size_t kMostFiles = 16;  // printers of a job
+  constexpr std::string_view kName = "/initial-frame.json";
+  std::map<std::string, v1::ResultFile> chosen;
+  for (const v1::ResultFile& file : assignment.warm_start_files()) {
+    const std::string_view path = file.path();
+    if (!path.ends_with(kName) || chosen.size() == kMostFiles) continue;
+    chosen.emplace(path.substr(0, path.size() - kName.size()), file);
+  }
+  return chosen;
+}
+
+Result<std::string> job_request_json(const v1::Assignment& assignment,
+                                     const std::filesystem::path& input_path,
+                                     const std::map<std::string, std::filesystem::path>& warm_start_files,
                                      int threads) {
   const v1::JobSpec& spec = assignment.spec();
-  if (!spec.has_mesh_sha256()) return unsupported("this worker takes meshes only, not frame problem files");
-  if (!spec.warm_start_job_id().empty()) return unsupported("this worker does not build on earlier jobs yet");
+  if (spec.has_frame_problem_sha256()) {
+    return text_of({{"job_id", assignment.job_id()},
+                    {"frame_problem_path", input_path.string()},
+                    {"mesh_name", spec.mesh_name()},
+                    {"threads", threads}});
+  }
+  if (!spec.has_mesh_sha256()) return unsupported("this worker takes meshes and frame problem files only");
   if (spec.printers_size() == 0 || assignment.printers_size() != spec.printers_size() ||
       assignment.materials_size() != spec.printers_size()) {
     return internal_error(
@@ -208,14 +235,19 @@ Result<std::string> job_request_json(const v1::Assignment& assignment, const std
   }
   auto options = options_json(spec.options());
   if (!options) return options.error();
-  const json request = {{"job_id", assignment.job_id()},
-                        {"mesh_path", mesh_path.string()},
-                        {"mesh_name", spec.mesh_name()},
-                        {"printers", std::move(printers)},
-                        {"loads", std::move(loads)},
-                        {"options", std::move(options).value()},
-                        {"threads", threads}};
-  return request.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+  json request = {{"job_id", assignment.job_id()},
+                  {"mesh_path", input_path.string()},
+                  {"mesh_name", spec.mesh_name()},
+                  {"printers", std::move(printers)},
+                  {"loads", std::move(loads)},
+                  {"options", std::move(options).value()},
+                  {"threads", threads}};
+  if (!spec.warm_start_job_id().empty()) {
+    json files = json::object();
+    for (const auto& [printer, path] : warm_start_files) files[printer] = path.string();
+    request["warm_start"] = {{"job_id", spec.warm_start_job_id()}, {"files", std::move(files)}};
+  }
+  return text_of(request);
 }
 
 }  // namespace skinframe::agent

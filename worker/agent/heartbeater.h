@@ -18,7 +18,7 @@
 namespace skinframe::agent {
 
 // While something runs a heartbeat goes out at least this often, however rarely the server asks for one.
-inline constexpr std::chrono::milliseconds kHeartbeatPeriod{450};
+inline constexpr std::chrono::milliseconds kHeartbeatPeriod{350};
 
 class Heartbeater {
  public:

@@ -15,6 +15,7 @@ using nlohmann::json;
 
 constexpr std::size_t kMaxNameBytes = 128;
 constexpr std::size_t kMaxPrinters = 16;
+constexpr std::size_t kMaxFrameStages = 16;
 
 // The first mistake found in one JSON object; readers after it do nothing.
 class ObjectReader {
@@ -156,6 +157,41 @@ Result<v1::PrinterResult> read_printer(const json& object) {
   return out;
 }
 
+Result<v1::FrameStage> read_frame_stage(const json& object) {
+  ObjectReader in(object, "frame.stages");
+  v1::FrameStage out;
+  out.set_stage(in.text("stage", kMaxNameBytes));
+  out.set_frame_volume_mm3(in.number("frame_volume_mm3").value_or(0));
+  out.set_nodes(in.count("nodes").value_or(0));
+  out.set_struts(in.count("struts").value_or(0));
+  if (!in.error().empty()) return invalid_input(in.error());
+  return out;
+}
+
+Result<v1::FrameResult> read_frame(const json& object) {
+  ObjectReader in(object, "frame");
+  v1::FrameResult out;
+  out.set_mechanics(in.text("mechanics", kMaxNameBytes));
+  if (const auto v = in.number("max_displacement_mm")) out.set_max_displacement_mm(*v);
+  out.set_max_axial_ratio(in.number("max_axial_ratio").value_or(0));
+  out.set_max_shear_ratio(in.number("max_shear_ratio").value_or(0));
+  if (const auto v = in.number("lower_bound_mm3")) out.set_lower_bound_mm3(*v);
+  out.set_violated_constraint(in.text("violated_constraint", kMaxNameBytes));
+  if (const auto v = in.number("best_reachable_displacement_mm")) out.set_best_reachable_displacement_mm(*v);
+  out.set_iterations(in.count("iterations").value_or(0));
+  const json* stages = in.find("stages");
+  if (stages != nullptr && (!stages->is_array() || stages->size() > kMaxFrameStages))
+    in.fail("stages", "is not a list of at most 16");
+  if (!in.error().empty()) return invalid_input(in.error());
+  if (stages == nullptr) return out;
+  for (const json& each : *stages) {
+    auto stage = read_frame_stage(each);
+    if (!stage) return stage.error();
+    *out.add_stages() = std::move(stage).value();
+  }
+  return out;
+}
+
 template <class T>
 Result<JobLine> as_line(Result<T> read) {
   if (!read) return read.error();
@@ -186,6 +222,11 @@ Result<Outcome> parse_outcome(std::string_view text) {
     in.fail("printers", "is not a list of at most 16");
   }
   if (!in.error().empty()) return invalid_input(in.error());
+  if (const json* frame = in.find("frame")) {
+    auto read = read_frame(*frame);
+    if (!read) return read.error();
+    out.frame = std::move(read).value();
+  }
   if (printers == nullptr) return out;
   for (const json& each : *printers) {
     auto printer = read_printer(each);

@@ -4,6 +4,7 @@
 // that are not finite and texts without end become an Error or are cut, never a crash.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -26,6 +27,7 @@ struct Outcome {
   v1::Reason reason = v1::REASON_UNSPECIFIED;
   std::string detail;
   std::vector<v1::PrinterResult> printers;
+  std::optional<v1::FrameResult> frame;  // of a frame problem
 };
 
 Result<Outcome> parse_outcome(std::string_view text);

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <deque>
 #include <fstream>
+#include <map>
 #include <random>
 #include <sstream>
 
@@ -66,6 +67,7 @@ class Attempt {
     completion.set_detail(end.outcome.detail);
     completion.set_retryable(end.retryable);
     for (const v1::PrinterResult& printer : end.outcome.printers) *completion.add_printers() = printer;
+    if (end.outcome.frame) *completion.mutable_frame() = *end.outcome.frame;
     complete(completion);
   }
 
@@ -97,19 +99,45 @@ class Attempt {
   }
 
   std::optional<Conclusion> prepare(const fs::path& folder) {
-    const fs::path mesh = folder / "mesh";
-    const auto request = job_request_json(assignment_, mesh, options_.threads_per_job);
+    std::map<std::string, fs::path> warm_start_files;
+    if (auto wrong = fetch_warm_start(folder / "warm-start", warm_start_files)) return wrong;
+    const bool is_mesh = assignment_.spec().has_mesh_sha256();
+    const fs::path input = folder / (is_mesh ? "mesh" : "problem.json");
+    const auto request = job_request_json(assignment_, input, warm_start_files, options_.threads_per_job);
     if (!request) {
       const bool refused = request.error().kind == ErrorKind::kUnsupported;
       return give_up(refused ? v1::REASON_UNSUPPORTED : v1::REASON_INTERNAL, request.error().message, false);
     }
-    const grpc::Status fetched = download_artifact(stubs_.artifacts, assignment_.spec().mesh_sha256(), mesh,
+    const grpc::Status fetched = download_artifact(stubs_.artifacts, input_sha256(assignment_.spec()), input,
                                                    heartbeater_.stop_token());
-    if (!fetched.ok()) return transfer_failed("the mesh could not be fetched", fetched);
+    if (!fetched.ok())
+      return transfer_failed(
+          is_mesh ? "the mesh could not be fetched" : "the frame problem could not be fetched", fetched);
     std::ofstream out(folder / "job.json");
     out << *request;
     out.close();
     if (!out) return give_up(v1::REASON_CRASHED, "the worker's disk: job.json could not be written", true);
+    return std::nullopt;
+  }
+
+  // What the server does not have any more is left out: the job then begins from nothing, and says so.
+  std::optional<Conclusion> fetch_warm_start(const fs::path& folder, std::map<std::string, fs::path>& files) {
+    const auto chosen = choose_warm_start_files(assignment_);
+    if (chosen.empty()) return std::nullopt;
+    std::error_code error;
+    fs::create_directory(folder, error);
+    if (error) return give_up(v1::REASON_CRASHED, "the worker's disk: " + error.message(), true);
+    for (const auto& [printer, file] : chosen) {
+      const fs::path path = folder / (std::to_string(files.size()) + ".json");
+      const grpc::Status fetched =
+          download_artifact(stubs_.artifacts, file.sha256(), path, heartbeater_.stop_token());
+      if (fetched.error_code() == grpc::StatusCode::NOT_FOUND) {
+        spdlog::warn("job={} {} of the earlier job is gone", id(), file.path());
+        continue;
+      }
+      if (!fetched.ok()) return transfer_failed("the earlier job's frame could not be fetched", fetched);
+      files.emplace(printer, path);
+    }
     return std::nullopt;
   }
 
@@ -254,8 +282,14 @@ class Attempt {
 
 void run_assignment(const AgentOptions& options, const fs::path& agent_folder, ServerStubs stubs,
                     const v1::Assignment& assignment, std::stop_token worker_stop) {
-  spdlog::info("job={} attempt {} begins: {} for {} printers", assignment.job_id(), assignment.attempt(),
-               assignment.spec().mesh_name(), assignment.spec().printers_size());
+  const v1::JobSpec& spec = assignment.spec();
+  if (spec.has_frame_problem_sha256()) {
+    spdlog::info("job={} attempt {} begins: frame problem {}", assignment.job_id(), assignment.attempt(),
+                 spec.mesh_name());
+  } else {
+    spdlog::info("job={} attempt {} begins: {} for {} printers", assignment.job_id(), assignment.attempt(),
+                 spec.mesh_name(), spec.printers_size());
+  }
   Attempt(options, agent_folder, stubs, assignment, std::move(worker_stop)).run();
 }
 

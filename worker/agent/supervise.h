@@ -16,8 +16,10 @@ inline constexpr std::size_t kMaxEventLineBytes = 64 * 1024;  // longer event li
 inline constexpr std::size_t kMaxLogLineBytes = 4 * 1024;     // longer log lines are cut
 
 struct SuperviseOptions {
-  std::stop_token stop;                                                    // asks for the child's end
-  std::chrono::milliseconds kill_after = std::chrono::milliseconds(1500);  // from SIGTERM to SIGKILL
+  std::stop_token stop;  // asks for the child's end
+  // From SIGTERM to SIGKILL. Nothing of a job that was told to stop is kept but a result that is whole
+  // already, so what it leaves undone costs nothing, and a cancellation is over within a second.
+  std::chrono::milliseconds kill_after = std::chrono::milliseconds(300);
   std::function<void(std::string_view)> on_stdout_line;
   std::function<void(std::string_view)> on_stderr_line;
 };

@@ -37,6 +37,17 @@ Verdict judge(const ExportedPrinter& result) {
   return verdict;
 }
 
+Verdict judge_solution(const ExportedPrinter& solution) {
+  Verdict verdict{solution.printer, {}, {}};
+  if (solution.frame.struts.empty() || solution.frame.nodes_mm.empty()) {
+    verdict.claims.push_back({"frame", false, "result.json has no struts"});
+    return verdict;
+  }
+  claim_solution(solution, &verdict);
+  claim_mechanics(solution, &verdict);
+  return verdict;
+}
+
 }  // namespace
 
 Result<std::vector<Verdict>> check_directory(const std::filesystem::path& directory, RunContext& context) {
@@ -44,7 +55,8 @@ Result<std::vector<Verdict>> check_directory(const std::filesystem::path& direct
   if (!exported) return exported.error();
   std::vector<Verdict> verdicts;
   try {
-    for (const ExportedPrinter& result : *exported) verdicts.push_back(judge(result));
+    for (const ExportedPrinter& result : exported->printers) verdicts.push_back(judge(result));
+    if (exported->solution) verdicts.push_back(judge_solution(*exported->solution));
   } catch (const std::exception& error) {  // CGAL's preconditions on a surface that is none
     return invalid_input(
         fmt::format("{}: the exported surface cannot be examined: {}", directory.string(), error.what()));

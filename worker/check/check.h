@@ -3,6 +3,8 @@
 // shares no code with the stages that made them beyond the mesh reader, so that an error there is not
 // repeated here.
 //
+// The result of a frame problem is judged as far as it goes: radii, volumes, equilibrium, limits, balance.
+//
 // A result that ended INFEASIBLE makes claims too: that its best frame is in equilibrium, and what it
 // reaches.
 #pragma once
@@ -15,7 +17,7 @@
 
 namespace skinframe::check {
 
-// One verdict a printer. Errors: a file that is absent or cannot be read, named.
+// One verdict a printer, or one of the frame. Errors: a file that is absent or cannot be read, named.
 Result<std::vector<Verdict>> check_directory(const std::filesystem::path& directory, RunContext& context);
 
 // For people: a line a claim, yes or NO first.

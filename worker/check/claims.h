@@ -24,7 +24,12 @@ void claim_frame(const ExportedPrinter& result, const Surface* outer, Verdict* v
 void claim_printed_struts(const ExportedPrinter& result, const TriangleMesh& cavity, const Surface& outer,
                           Verdict* verdict);
 
-// Equilibrium (1), stresses (2, 3), displacement (6): assembled and solved anew, in the paper's model.
+// Of a frame problem: radii within each strut's own bounds (9, 10), slenderness (4, 5), counts and volumes
+// (12), balance (8).
+void claim_solution(const ExportedPrinter& solution, Verdict* verdict);
+
+// Equilibrium (1), stresses (2, 3), displacement (6): assembled and solved anew, in the paper's model or the
+// pin-jointed one, as the file says.
 void claim_mechanics(const ExportedPrinter& result, Verdict* verdict);
 
 // Of skin and struts together, each strut counted in full.

@@ -50,7 +50,11 @@ ExportedFrame parse_frame(const json& file) {
   ExportedFrame frame;
   const json& material = file.at("material");
   frame.tensile_modulus_mpa = material.at("tensile_modulus_mpa").get<double>();
-  frame.shear_modulus_mpa = material.at("shear_modulus_mpa").get<double>();
+  const auto mechanics = file.at("mechanics").get<std::string>();
+  if (mechanics != "paper" && mechanics != "axial")
+    throw std::out_of_range(fmt::format("mechanics \"{}\" is not known to this check", mechanics));
+  frame.axial = mechanics == "axial";
+  frame.shear_modulus_mpa = frame.axial ? 0.0 : material.at("shear_modulus_mpa").get<double>();
   frame.density_g_cm3 = material.at("density_g_cm3").get<double>();
   frame.tensile_strength_mpa = optional_number(material, "tensile_strength_mpa");
   frame.shear_strength_mpa = optional_number(material, "shear_strength_mpa");
@@ -70,12 +74,13 @@ ExportedFrame parse_frame(const json& file) {
     strut.max_radius_mm = item.at("max_radius_mm").get<double>();
     frame.struts.push_back(strut);
   }
-  for (const json& item : file.at("skin_triangles")) {
+  for (const json& item : file.value("skin_triangles", json::array())) {
     const std::string place = fmt::format("skin_triangles[{}]", frame.skin_triangles.size());
     frame.skin_triangles.push_back({node_index(item.at(0), n, place), node_index(item.at(1), n, place),
                                     node_index(item.at(2), n, place)});
   }
   frame.fixed.assign(n, {false, false, false});
+  if (n == 0) return frame;
   for (const json& item : file.at("fixed")) {
     const int node = node_index(item.at("node"), n, "fixed.node");
     for (const char axis : item.at("axes").get<std::string>())
@@ -147,6 +152,31 @@ ExportedPrinter parse_printer(const json& item) {
   return out;
 }
 
+ExportedPrinter parse_solution(const json& item) {
+  ExportedPrinter figures;
+  figures.printer = "frame";
+  const json& termination = item.at("termination");
+  figures.termination =
+      termination.at("reason").get<std::string>() == "infeasible" ? "INFEASIBLE" : "OPTIMAL";
+  figures.violated_constraint = termination.value("violated_constraint", "");
+  figures.best_reachable_displacement_mm = optional_number(termination, "best_reachable_displacement_mm");
+  const json& volumes = item.at("volumes_mm3");
+  figures.size_volume_mm3 = volumes.at("size").get<double>();
+  figures.topology_volume_mm3 = volumes.at("topology").get<double>();
+  figures.geometry_volume_mm3 = volumes.at("geometry").get<double>();
+  figures.final_nodes = item.at("counts").at("geometry").at("nodes").get<int>();
+  figures.final_struts = item.at("counts").at("geometry").at("struts").get<int>();
+  figures.lower_bound_mm3 = optional_number(item, "lower_bound_mm3");
+  const json& evaluation = item.at("evaluation");
+  figures.frame_volume_mm3 = evaluation.at("frame_volume_mm3").get<double>();
+  figures.max_displacement_mm = optional_number(evaluation, "max_displacement_mm").value_or(0.0);
+  figures.max_axial_ratio = optional_number(evaluation, "max_axial_ratio").value_or(0.0);
+  figures.max_shear_ratio = optional_number(evaluation, "max_shear_ratio").value_or(0.0);
+  figures.min_radius_mm = evaluation.at("min_radius_mm").get<double>();
+  figures.balance_margin_mm = optional_number(evaluation, "balance_margin_mm");
+  return figures;
+}
+
 }  // namespace
 
 TriangleMesh weld_equal(const TriangleMesh& soup) {
@@ -166,14 +196,21 @@ TriangleMesh weld_equal(const TriangleMesh& soup) {
   return welded;
 }
 
-Result<std::vector<ExportedPrinter>> read_exported(const std::filesystem::path& directory,
-                                                   RunContext& context) {
+Result<Exported> read_exported(const std::filesystem::path& directory, RunContext& context) {
   const auto report_path = directory / "report.json";
   auto report = read_json(report_path);
   if (!report) return report.error();
   std::vector<ExportedPrinter> printers;
   std::filesystem::path reading = report_path;
   try {
+    if (report->contains("frame")) {
+      ExportedPrinter solution = parse_solution(report->at("frame"));
+      reading = directory / "result.json";
+      auto frame = read_json(reading);
+      if (!frame) return frame.error();
+      solution.frame = parse_frame(*frame);
+      return Exported{{}, std::move(solution)};
+    }
     for (const json& item : report->at("printers")) {
       reading = report_path;
       // A printer that was refused before it had a frame (does not fit, for example) claims nothing.
@@ -197,7 +234,7 @@ Result<std::vector<ExportedPrinter>> read_exported(const std::filesystem::path& 
   }
   if (printers.empty())
     return invalid_input(fmt::format("{}: no printer in it has a result to check", report_path.string()));
-  return printers;
+  return Exported{std::move(printers), std::nullopt};
 }
 
 }  // namespace skinframe::check

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a result folder holds, read back from its files alone: report.json, and for each printer frame.json
-// and skin-frame.stl. Only the mesh reader is shared with the code that wrote them. Units as in the files:
-// mm, N, MPa.
+// and skin-frame.stl, or for a frame problem result.json. Only the mesh reader is shared with the code that
+// wrote them. Units as in the files: mm, N, MPa.
 #pragma once
 
 #include <Eigen/Core>
@@ -30,6 +30,7 @@ struct ExportedLoadCase {
 };
 
 struct ExportedFrame {
+  bool axial = false;  // the pin-jointed model in place of the paper's: no shear spring
   double tensile_modulus_mpa = 0, shear_modulus_mpa = 0, density_g_cm3 = 0;
   std::optional<double> tensile_strength_mpa, shear_strength_mpa, slenderness, displacement_limit_mm;
   std::vector<Eigen::Vector3d> nodes_mm;
@@ -65,9 +66,15 @@ struct ExportedPrinter {
   bool infeasible() const { return termination == "INFEASIBLE"; }
 };
 
+struct Exported {
+  std::vector<ExportedPrinter> printers;
+  // The result of a frame problem: report.json's "frame" and result.json. Of ExportedPrinter the fields that
+  // a frame has; printer is "frame", solid, skin and mesh are not there.
+  std::optional<ExportedPrinter> solution;
+};
+
 // Errors: kIo and kInvalidInput, naming file and field.
-Result<std::vector<ExportedPrinter>> read_exported(const std::filesystem::path& directory,
-                                                   RunContext& context);
+Result<Exported> read_exported(const std::filesystem::path& directory, RunContext& context);
 
 // Vertices at exactly the same place become one.
 TriangleMesh weld_equal(const TriangleMesh& soup);

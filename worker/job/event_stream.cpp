@@ -69,7 +69,8 @@ json outcome_json(const PrinterOutcome& outcome) {
   return out;
 }
 
-EventStream::EventStream(std::FILE* out) : out_(out), beat_([this](std::stop_token stop) { beat(stop); }) {}
+EventStream::EventStream(std::FILE* out, TimeLeft time_left)
+    : out_(out), time_left_(time_left), beat_([this](std::stop_token stop) { beat(stop); }) {}
 
 EventStream::~EventStream() {
   beat_.request_stop();
@@ -85,7 +86,7 @@ void EventStream::progress(const PipelineProgress& event) {
   if (!new_stage && !due) return;
   const double behind = share_behind(event.progress.stage);
   std::optional<double> seconds_left;
-  if (behind > 0.1) {
+  if (time_left_ == TimeLeft::kEstimated && behind > 0.1) {
     const double elapsed = std::chrono::duration<double>(Clock::now() - started_).count();
     seconds_left = elapsed * (1 - behind) / behind;
   }

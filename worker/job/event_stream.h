@@ -19,12 +19,15 @@ namespace skinframe {
 inline constexpr double kTickSeconds = 0.2;
 inline constexpr double kBeatSeconds = 0.4;
 
+// Whether the time left can be told. A frame problem's stages have no usual share of it.
+enum class TimeLeft { kEstimated, kUnknown };
+
 nlohmann::json progress_json(const PipelineProgress& progress, std::optional<double> seconds_left);
 nlohmann::json outcome_json(const PrinterOutcome& outcome);
 
 class EventStream {
  public:
-  explicit EventStream(std::FILE* out);
+  explicit EventStream(std::FILE* out, TimeLeft time_left = TimeLeft::kEstimated);
   ~EventStream();  // stops the beat; writes nothing more
 
   void progress(const PipelineProgress& progress);
@@ -36,6 +39,7 @@ class EventStream {
   void beat(std::stop_token stop);
 
   std::FILE* out_;
+  const TimeLeft time_left_;
   std::mutex mutex_;
   std::condition_variable_any wake_;
   std::optional<PipelineProgress> last_;

@@ -139,13 +139,18 @@ Result<JobFile> parse_job(const json& document) {
     JobFile file;
     JobRequest& request = file.request;
     request.job_id = document.at("job_id").get<std::string>();
-    request.mesh_path = document.at("mesh_path").get<std::string>();
     request.mesh_name = document.at("mesh_name").get<std::string>();
+    file.threads = static_cast<int>(number(document, "threads", 1, 256));
+    if (is_given(document, "frame_problem_path")) {
+      file.frame_problem = document.at("frame_problem_path").get<std::string>();
+      return file;
+    }
+    if (is_given(document, "warm_start")) throw Refusal{unsupported("a warm start is not built yet")};
+    request.mesh_path = document.at("mesh_path").get<std::string>();
     for (const json& item : document.at("printers")) request.printers.push_back(parse_printer(item));
     if (request.printers.empty()) refuse("printers is empty");
     for (const json& item : document.at("loads")) request.loads.push_back(parse_load(item));
     request.options = parse_options(document.at("options"));
-    file.threads = static_cast<int>(number(document, "threads", 1, 256));
     return file;
   } catch (const Refusal& refusal) {
     return refusal.error;

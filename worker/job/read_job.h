@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "worker/pipeline/request.h"
 #include "worker/run/result.h"
@@ -11,7 +12,8 @@
 namespace skinframe {
 
 struct JobFile {
-  JobRequest request;
+  JobRequest request;  // of a frame problem: job_id and mesh_name alone
+  std::optional<std::filesystem::path> frame_problem;
   int threads = 1;
 };
 

@@ -4,12 +4,11 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <chrono>
 #include <new>
-#include <thread>
 
 #include "worker/job/event_stream.h"
 #include "worker/job/read_job.h"
+#include "worker/job/run_frame_job.h"
 #include "worker/pipeline/pipeline.h"
 #include "worker/pipeline/write_json.h"
 #include "worker/run/stop_signals.h"
@@ -18,13 +17,6 @@ namespace skinframe {
 namespace {
 
 using nlohmann::json;
-
-json failed(Reason reason, const std::string& detail) {
-  return {{"state", reason == Reason::kCancelled ? "CANCELLED" : "FAILED"},
-          {"reason", to_string(reason)},
-          {"detail", detail},
-          {"printers", json::array()}};
-}
 
 // One printer: its own ending. Several: SUCCEEDED when all are done, PARTIAL when some are, else the first
 // one's reason.
@@ -50,40 +42,42 @@ json work(const JobFile& file, const std::filesystem::path& out_dir, std::stop_t
   context.stop = stop;
   context.seed = file.request.options.seed;
   context.threads = file.threads;
-  EventStream events(stdout);
+  EventStream events(stdout, file.frame_problem ? TimeLeft::kUnknown : TimeLeft::kEstimated);
   PipelineObserver observer;
   observer.progress = [&](const PipelineProgress& progress) { events.progress(progress); };
   observer.printer_ended = [&](const PrinterOutcome& outcome) { events.printer_ended(outcome); };
   try {
+    if (file.frame_problem) return run_frame_job(file, out_dir, events, context);
     auto outcomes = run_pipeline(file.request, out_dir, observer, context);
-    if (!outcomes) return failed(reason_of(outcomes.error().kind), outcomes.error().message);
+    if (!outcomes) return failed_outcome(reason_of(outcomes.error().kind), outcomes.error().message);
     return outcome_of(*outcomes);
   } catch (const std::bad_alloc&) {
-    return failed(Reason::kOutOfMemory,
-                  "the job needed more memory than it may take; use fewer nodes or a larger --voxel");
+    return failed_outcome(
+        Reason::kOutOfMemory,
+        file.frame_problem
+            ? "the job needed more memory than it may take; use a smaller frame"
+            : "the job needed more memory than it may take; use fewer nodes or a larger --voxel");
   } catch (const std::exception& error) {
-    return failed(Reason::kInternal, std::string("unexpected: ") + error.what());
+    return failed_outcome(Reason::kInternal, std::string("unexpected: ") + error.what());
   }
 }
 
 }  // namespace
 
 int run_job(const std::filesystem::path& work_dir) {
-  StopSignals signals;
-  std::stop_source stop;
-  const std::jthread listener([&](std::stop_token done) {
-    while (!done.stop_requested())
-      if (signals.came_within(std::chrono::milliseconds(50))) stop.request_stop();
-  });
-
+  const StopOnSignal stop;
   json outcome;
   auto file = read_job(work_dir / "job.json");
   if (!file) {
-    outcome = failed(reason_of(file.error().kind), file.error().message);
+    outcome = failed_outcome(reason_of(file.error().kind), file.error().message);
   } else {
-    spdlog::info("job={} mesh={} printers={}", file->request.job_id, file->request.mesh_name,
-                 file->request.printers.size());
-    outcome = work(*file, work_dir / "out", stop.get_token());
+    if (file->frame_problem) {
+      spdlog::info("job={} frame problem={}", file->request.job_id, file->request.mesh_name);
+    } else {
+      spdlog::info("job={} mesh={} printers={}", file->request.job_id, file->request.mesh_name,
+                   file->request.printers.size());
+    }
+    outcome = work(*file, work_dir / "out", stop.token());
     spdlog::info("job={} ended state={} reason={}", file->request.job_id, outcome["state"].get<std::string>(),
                  outcome["reason"].get<std::string>());
   }

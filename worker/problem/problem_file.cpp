@@ -81,6 +81,51 @@ class Field {
   std::string path_;
 };
 
+// Reads a JSON text through without keeping any of it.
+class JsonBounds : public nlohmann::json_sax<json> {
+ public:
+  const std::string& refusal() const { return refusal_; }
+
+  bool null() override { return one(); }
+  bool boolean(bool) override { return one(); }
+  bool number_integer(number_integer_t) override { return one(); }
+  bool number_unsigned(number_unsigned_t) override { return one(); }
+  bool number_float(number_float_t, const string_t&) override { return one(); }
+  bool string(string_t&) override { return one(); }
+  bool binary(binary_t&) override { return one(); }
+  bool key(string_t&) override { return one(); }
+  bool start_object(std::size_t) override { return open(); }
+  bool start_array(std::size_t) override { return open(); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& e) override {
+    refusal_ = fmt::format("not valid JSON ({})", e.what());
+    return false;
+  }
+
+ private:
+  bool one() {
+    if (++values_ <= kMaxProblemValues) return true;
+    refusal_ = fmt::format("more than {} values", kMaxProblemValues);
+    return false;
+  }
+  bool open() {
+    if (++depth_ > kMaxProblemDepth) {
+      refusal_ = fmt::format("nested more than {} deep", kMaxProblemDepth);
+      return false;
+    }
+    return one();
+  }
+  bool close() {
+    --depth_;
+    return true;
+  }
+
+  std::size_t values_ = 0;
+  int depth_ = 0;
+  std::string refusal_;
+};
+
 ElementModel read_element(const Field& field) {
   const std::string name = field.text();
   for (ElementModel model : {ElementModel::kPaper, ElementModel::kAxial})
@@ -112,6 +157,23 @@ int leading_skin_nodes(const Frame& frame) {
   return static_cast<int>(leading);
 }
 
+// By index: the problem itself knows only which nodes are joined.
+void refuse_twins(const std::vector<Strut>& struts) {
+  std::vector<std::array<int, 3>> ends;  // the nodes in order, then the strut
+  ends.reserve(struts.size());
+  for (std::size_t j = 0; j < struts.size(); ++j) {
+    const auto [low, high] = std::minmax(struts[j].a, struts[j].b);
+    ends.push_back({low, high, static_cast<int>(j)});
+  }
+  std::sort(ends.begin(), ends.end());
+  const auto twin = std::adjacent_find(
+      ends.begin(), ends.end(), [](const auto& p, const auto& q) { return p[0] == q[0] && p[1] == q[1]; });
+  if (twin == ends.end()) return;
+  refuse(
+      fmt::format("struts[{}]", (*std::next(twin))[2]),
+      fmt::format("joins nodes {} and {}, as struts[{}] does already", (*twin)[0], (*twin)[1], (*twin)[2]));
+}
+
 void read_frame(const Field& root, FrameProblem& problem) {
   Frame& frame = problem.frame;
   const Field nodes = root.at("nodes");
@@ -127,6 +189,7 @@ void read_frame(const Field& root, FrameProblem& problem) {
                             strut.has("skin") && strut.at("skin").boolean()});
     problem.bounds.push_back({strut.at("min_radius_mm").number(), strut.at("max_radius_mm").number()});
   }
+  refuse_twins(frame.struts);
   if (root.has("skin_triangles")) {
     const Field triangles = root.at("skin_triangles");
     const std::size_t count = triangles.size(2 * kMaxProblemNodes);
@@ -254,20 +317,29 @@ Result<ProblemFile> parse_problem(const json& document) {
   }
 }
 
-Result<ProblemFile> read_problem(const std::filesystem::path& path) {
+Result<ProblemFile> read_problem(const std::filesystem::path& path, const std::string& name) {
   std::error_code failure;
   const std::uintmax_t bytes = std::filesystem::file_size(path, failure);
-  if (failure) return io_error(fmt::format("{}: {}", path.string(), failure.message()));
+  if (failure) return io_error(fmt::format("{}: {}", name, failure.message()));
   if (bytes > kMaxProblemFileBytes)
-    return invalid_input(
-        fmt::format("{}: {} bytes, at most {} are read", path.string(), bytes, kMaxProblemFileBytes));
+    return invalid_input(fmt::format("{}: {} bytes, at most {} are read", name, bytes, kMaxProblemFileBytes));
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) return io_error(fmt::format("{}: cannot be opened", path.string()));
+  if (!stream) return io_error(fmt::format("{}: cannot be opened", name));
+  JsonBounds bounds;
+  if (!json::sax_parse(stream, &bounds)) return invalid_input(fmt::format("{}: {}", name, bounds.refusal()));
+  stream.clear();
+  stream.seekg(0);
   try {
-    return parse_problem(json::parse(stream));
+    auto file = parse_problem(json::parse(stream));
+    if (!file) return Error{file.error().kind, fmt::format("{}: {}", name, file.error().message)};
+    return file;
   } catch (const json::exception& e) {
-    return invalid_input(fmt::format("{}: not valid JSON ({})", path.string(), e.what()));
+    return invalid_input(fmt::format("{}: not valid JSON ({})", name, e.what()));
   }
+}
+
+Result<ProblemFile> read_problem(const std::filesystem::path& path) {
+  return read_problem(path, path.string());
 }
 
 }  // namespace skinframe

@@ -37,7 +37,10 @@ inline constexpr std::size_t kMaxProblemLoadCases = 1'000;
 inline constexpr std::size_t kMaxProblemHalfPlanes = 10'000;
 // Half planes times (6 nodes + struts): each is a dense row of the optimiser's system.
 inline constexpr std::size_t kMaxProblemBalanceEntries = 50'000'000;
-inline constexpr std::size_t kMaxProblemForces = 50'000'000;  // load cases times nodes
+inline constexpr std::size_t kMaxProblemForces = 10'000'000;  // load cases times nodes
+// Of the JSON, before a tree is made of it: a value takes up to a hundred bytes for two or three of the file.
+inline constexpr std::size_t kMaxProblemValues = 30'000'000;
+inline constexpr int kMaxProblemDepth = 16;
 
 struct ProblemFile {
   FrameProblem problem;
@@ -46,6 +49,8 @@ struct ProblemFile {
 
 // Errors name the field and its index: "struts[3].a: 900 is not a node (0..511)".
 Result<ProblemFile> parse_problem(const nlohmann::json& document);
+// Errors call the file by `name`, its path by default: a job's file lies under another one.
+Result<ProblemFile> read_problem(const std::filesystem::path& path, const std::string& name);
 Result<ProblemFile> read_problem(const std::filesystem::path& path);
 
 // The problem as a problem file, with "radius_mm" on each strut and, where given, "displacements_mm" on each

@@ -82,12 +82,12 @@ json result_json(const OptimizeResult& result) {
   return document;
 }
 
-Status write_result(const OptimizeResult& result, const std::filesystem::path& path) {
+Status write_result(const nlohmann::json& result, const std::filesystem::path& path) {
   std::filesystem::path beside = path;
   beside += ".part";
   {
     std::ofstream stream(beside, std::ios::binary);
-    stream << result_json(result).dump() << '\n';
+    stream << result.dump() << '\n';
     stream.close();
     if (!stream) return io_error(fmt::format("{}: cannot be written", beside.string()));
   }

@@ -20,6 +20,6 @@ namespace skinframe {
 nlohmann::json result_json(const OptimizeResult& result);
 
 // Written beside `path` first and renamed: no half file is ever seen.
-Status write_result(const OptimizeResult& result, const std::filesystem::path& path);
+Status write_result(const nlohmann::json& result, const std::filesystem::path& path);
 
 }  // namespace skinframe

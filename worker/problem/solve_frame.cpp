@@ -3,11 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <iostream>
+#include <new>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
 
 #include "worker/problem/problem_file.h"
 #include "worker/problem/result_file.h"
+#include "worker/problem/result_summary.h"
+#include "worker/run/stop_signals.h"
 
 namespace skinframe {
 namespace {
@@ -27,49 +33,90 @@ int fail(const Error& error) {
 }
 
 std::string summary_text(const OptimizeResult& r) {
-  return fmt::format(
-      "{}: {}\n"
-      "volume {:.1f} mm3 (size {:.1f}, topology {:.1f}, geometry {:.1f}), {} nodes, {} struts\n"
-      "displacement {:.6g} mm, axial ratio {:.4g}, shear ratio {:.4g}\n",
-      to_string(r.reason), r.detail, r.evaluation.frame_volume_mm3, r.size.volume_mm3, r.topology.volume_mm3,
-      r.geometry.volume_mm3, r.geometry.nodes, r.geometry.struts, r.evaluation.max_displacement_mm,
-      r.evaluation.max_axial_ratio, r.evaluation.max_shear_ratio);
+  std::string text = fmt::format("{}: {}\n", to_string(r.reason), r.detail);
+  text += fmt::format("{:<10}{:>14}{:>9}{:>9}\n", "stage", "volume mm3", "nodes", "struts");
+  const std::pair<const char*, const StageRecord*> stages[] = {
+      {"initial", &r.initial}, {"size", &r.size}, {"topology", &r.topology}, {"geometry", &r.geometry}};
+  for (const auto& [name, stage] : stages)
+    text += fmt::format("{:<10}{:>14.6g}{:>9}{:>9}\n", name, stage->volume_mm3, stage->nodes, stage->struts);
+  if (r.lower_bound_mm3 && r.size.volume_mm3 > 0)
+    text += fmt::format("lower bound {:.6g} mm3, gap {:.3g} % of the sized frame\n", *r.lower_bound_mm3,
+                        100 * (1 - *r.lower_bound_mm3 / r.size.volume_mm3));
+  text += fmt::format("displacement {:.6g} mm, axial ratio {:.4g}, shear ratio {:.4g} ({} model)\n",
+                      r.evaluation.max_displacement_mm, r.evaluation.max_axial_ratio,
+                      r.evaluation.max_shear_ratio, to_string(r.problem.element));
+  return text;
 }
 
-std::string summary_json(const OptimizeResult& r) {
-  const nlohmann::json summary{{"reason", to_string(r.reason)},
-                               {"detail", r.detail},
-                               {"frame_volume_mm3", r.evaluation.frame_volume_mm3},
-                               {"max_displacement_mm", r.evaluation.max_displacement_mm},
-                               {"nodes", r.geometry.nodes},
-                               {"struts", r.geometry.struts}};
-  return summary.dump() + "\n";
+// What could be seen only at the end, after all the work: that there is no place for the result.
+Status can_be_written(const std::filesystem::path& out) {
+  const auto folder = out.has_parent_path() ? out.parent_path() : std::filesystem::path(".");
+  std::error_code failure;
+  if (std::filesystem::is_directory(folder, failure)) return ok_status();
+  return io_error(
+      fmt::format("{}: there is no such folder to write {} in", folder.string(), out.filename().string()));
 }
+
+int solve(const std::filesystem::path& problem, const std::filesystem::path& out, bool json_summary,
+          RunContext& context) {
+  if (const Status place = can_be_written(out); !place) {
+    std::cerr << "skinframe: " << place.error().message << '\n';
+    return kInternal;
+  }
+  const auto file = read_problem(problem, problem.string());
+  if (!file) return fail(file.error());
+  const auto result = optimize_frame(file->problem, file->options, context);
+  if (!result) return fail(result.error());
+  const nlohmann::json document = result_json(*result);
+  if (const Status written = write_result(document, out); !written) {
+    std::cerr << "skinframe: " << written.error().message << '\n';
+    return kInternal;
+  }
+  std::cout << (json_summary ? result_summary(document).dump() + "\n" : summary_text(*result));
+  return result->reason == Termination::kInfeasible ? kInfeasible : kSolved;
+}
+
+// A line when the stage changes and twice a second.
+class ProgressLines {
+ public:
+  void show(const Progress& tick) {
+    using namespace std::chrono_literals;
+    const auto now = std::chrono::steady_clock::now();
+    if (stage_ == tick.stage && now - last_ < 500ms) return;
+    stage_ = tick.stage;
+    last_ = now;
+    std::string line = fmt::format("{}  iteration {}", to_string(tick.stage), tick.iteration);
+    if (tick.frame_volume_mm3) line += fmt::format("  frame {:.6g} mm3", *tick.frame_volume_mm3);
+    if (tick.struts_left) line += fmt::format("  {} struts", *tick.struts_left);
+    if (tick.violation) line += fmt::format("  violation {:.1e}", *tick.violation);
+    std::cerr << line + "\n";
+  }
+
+ private:
+  std::optional<Stage> stage_;
+  std::chrono::steady_clock::time_point last_{};
+};
 
 }  // namespace
 
 int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out,
                      bool json_summary, RunContext& context) {
-  auto file = read_problem(problem);
-  if (!file) return fail(file.error());
-  auto result = optimize_frame(file->problem, file->options, context);
-  if (!result) return fail(result.error());
-  if (const Status written = write_result(*result, out); !written) {
-    std::cerr << "skinframe: " << written.error().message << '\n';
+  try {
+    return solve(problem, out, json_summary, context);
+  } catch (const std::bad_alloc&) {
+    std::cerr << "skinframe: " << problem.string()
+              << ": needs more memory than there is; use a smaller frame\n";
     return kInternal;
   }
-  std::cout << (json_summary ? summary_json(*result) : summary_text(*result));
-  return result->reason == Termination::kInfeasible ? kInfeasible : kSolved;
 }
 
 int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out,
                      bool json_summary) {
+  const StopOnSignal stop;
+  ProgressLines lines;
   RunContext context;
-  context.report = [](const Progress& tick) {
-    if (tick.iteration % 10 == 0 && tick.frame_volume_mm3)
-      std::cerr << fmt::format("{} {}: {:.1f} mm3\n", to_string(tick.stage), tick.iteration,
-                               *tick.frame_volume_mm3);
-  };
+  context.stop = stop.token();
+  context.report = [&](const Progress& tick) { lines.show(tick); };
   return solve_frame_main(problem, out, json_summary, context);
 }
 

@@ -8,11 +8,12 @@
 
 namespace skinframe {
 
-// The exit code: 0 solved, 3 bad problem file, 4 infeasible (the result is written all the same), 5 internal
-// or not writable, 6 cancelled. Errors and progress go to stderr; stdout gets a summary, as one line of JSON
-// when json_summary.
+// The exit code: 0 solved, 3 bad problem file, 4 infeasible (the result is written all the same), 5 internal,
+// out of memory or not writable, 6 cancelled. Errors go to stderr; stdout gets a summary, as one line of JSON
+// (result_summary.h) when json_summary.
 int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out,
                      bool json_summary, RunContext& context);
+// The same with progress on stderr, stopped by SIGINT and SIGTERM: before any other thread of ours starts.
 int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out,
                      bool json_summary);
 

@@ -54,4 +54,10 @@ bool StopSignals::came_within(std::chrono::milliseconds time) const {
          ::read(event_, &count, sizeof count) == sizeof count;
 }
 
+StopOnSignal::StopOnSignal()
+    : listener_([this](const std::stop_token& done) {
+        while (!done.stop_requested())
+          if (signals_.came_within(std::chrono::milliseconds(50))) stop_.request_stop();
+      }) {}
+
 }  // namespace skinframe

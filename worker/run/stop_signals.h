@@ -8,6 +8,8 @@
 #include <signal.h>
 
 #include <chrono>
+#include <stop_token>
+#include <thread>
 
 namespace skinframe {
 
@@ -26,6 +28,18 @@ class StopSignals {
  private:
   int event_;  // an eventfd
   sigset_t signals_{};
+};
+
+// A stop token that the first of the two signals requests; what it is given to ends in its own time.
+class StopOnSignal {
+ public:
+  StopOnSignal();
+  std::stop_token token() const { return stop_.get_token(); }
+
+ private:
+  StopSignals signals_;
+  std::stop_source stop_;
+  std::jthread listener_;  // last: it uses the others
 };
 
 }  // namespace skinframe

@@ -125,6 +125,27 @@ TEST_F(Program, SubmitPrintsTheIdAloneAndAsJson) {
   EXPECT_EQ(jobs_.submissions.at(0).spec().mesh_name(), "mesh.stl");
 }
 
+TEST_F(Program, AFrameProblemIsToldByItsContentAndNeedsNoPrinter) {
+  jobs_.job.set_job_id("j1");
+  environment_ = "SKINFRAME_SERVER=" + address_;
+  const std::string problem = folder_.write("problem.json", "{\"mechanics\": \"paper\"}");
+  EXPECT_EQ(run("submit " + problem).out, "j1\n");
+  const v1::JobSpec& spec = jobs_.submissions.at(0).spec();
+  EXPECT_TRUE(spec.has_frame_problem_sha256());
+  EXPECT_EQ(spec.mesh_name(), "problem.json");
+  EXPECT_EQ(spec.options().ByteSizeLong(), 0u);
+  const Ran mesh_alone = run("submit " + mesh());
+  EXPECT_EQ(mesh_alone.code, 2);
+  EXPECT_THAT(mesh_alone.err, HasSubstr("--printer is required"));
+}
+
+TEST_F(Program, AnEarlierJobToStartFromIsAField) {
+  jobs_.job.set_job_id("j1");
+  environment_ = "SKINFRAME_SERVER=" + address_;
+  EXPECT_EQ(run("submit " + mesh() + " --printer p --warm-start j0").code, 0);
+  EXPECT_EQ(jobs_.submissions.at(0).spec().warm_start_job_id(), "j0");
+}
+
 TEST_F(Program, SubmitWatchDownloadsAndTellsTheEndByItsExitCode) {
   jobs_.job.set_job_id("j1");
   jobs_.add_state(v1::JOB_STATE_FAILED);

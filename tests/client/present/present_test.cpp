@@ -158,6 +158,51 @@ TEST(ResultTable, HasTheFiguresOfTable2AndNamesTheModelOfTheDisplacement) {
               HasSubstr("makerbot-replicator-2: FAILED, DOES_NOT_FIT: 50 mm too tall"));
 }
 
+v1::Job solved_frame() {
+  v1::Job job;
+  job.set_job_id("j2");
+  job.set_state(v1::JOB_STATE_SUCCEEDED);
+  job.mutable_spec()->set_frame_problem_sha256(std::string(64, 'a'));
+  job.mutable_spec()->set_mesh_name("tower.json");
+  auto& frame = *job.mutable_frame();
+  frame.set_mechanics("axial");
+  frame.set_max_displacement_mm(0.0499);
+  frame.set_iterations(80);
+  for (const auto& [name, volume, struts] :
+       {std::tuple("initial", 15617.7, 1311), std::tuple("size", 16218.2, 1311),
+        std::tuple("topology", 8109.1, 175)}) {
+    auto& stage = *frame.add_stages();
+    stage.set_stage(name);
+    stage.set_frame_volume_mm3(volume);
+    stage.set_nodes(200);
+    stage.set_struts(struts);
+  }
+  return job;
+}
+
+TEST(ResultTable, OfAFrameProblemHasTheVolumeOfEachStage) {
+  const std::string table = result_table(solved_frame());
+  for (const char* figure :
+       {"16218.2", "1311", "100.0 %", "8109.1", "175", "50.0 %", "0.0499 mm", "axial model"})
+    EXPECT_THAT(table, HasSubstr(figure));
+  EXPECT_THAT(table, Not(HasSubstr("best reachable")));
+  v1::Job weak = solved_frame();
+  weak.mutable_frame()->clear_max_displacement_mm();
+  weak.mutable_frame()->set_best_reachable_displacement_mm(0.0712);
+  EXPECT_THAT(result_table(weak), HasSubstr("best reachable displacement 0.0712 mm"));
+  EXPECT_THAT(result_table(weak), HasSubstr("displacement -,"));
+}
+
+TEST(JobDescription, OfAFrameProblemNamesItsFileAndNoPrinter) {
+  const std::string text = job_description(solved_frame());
+  EXPECT_THAT(text, testing::ContainsRegex("problem +tower.json"));
+  EXPECT_THAT(text, Not(HasSubstr("printers")));
+  EXPECT_THAT(job_list({solved_frame()}), HasSubstr("(frame problem)"));
+  v1::Job warm = finished_job();
+  warm.mutable_spec()->set_warm_start_job_id("j0");
+  EXPECT_THAT(job_description(warm), testing::ContainsRegex("starts from +j0"));
+}
+
 TEST(Json, NumbersAreNumbersEnumsAreWordsAndAbsentIsLeftOut) {
   v1::JobEvent event = size_event(3);
   const auto json = to_json(event);

@@ -38,7 +38,7 @@ TEST(Sha256Test, IsThatOfTheStandard) {  // FIPS 180-2, appendix B.1
 TEST_F(Transfer, AnInterruptedUploadGoesOnWhereItStopped) {
   const std::string mesh(900'000, 'm');
   artifacts_.break_upload_after = 300'000;
-  const auto digest = upload_mesh(connection_, folder_.write("mesh.stl", mesh));
+  const auto digest = upload_input(connection_, folder_.write("mesh.stl", mesh));
   ASSERT_TRUE(digest.ok()) << digest.failure().message;
   ASSERT_EQ(artifacts_.upload_offsets.size(), 2u);
   EXPECT_GE(artifacts_.upload_offsets[1], 300'000);
@@ -49,7 +49,7 @@ TEST_F(Transfer, AKeptPartOfAnotherContentIsSentOnceMoreFromTheBeginning) {
   const std::string mesh(1'000, 'm');
   artifacts_.hash = sha256;
   artifacts_.partial[sha256(mesh)] = std::string(300, 'x');
-  const auto digest = upload_mesh(connection_, folder_.write("mesh.stl", mesh));
+  const auto digest = upload_input(connection_, folder_.write("mesh.stl", mesh));
   ASSERT_TRUE(digest.ok()) << digest.failure().message;
   EXPECT_EQ(artifacts_.upload_offsets, (std::vector<std::int64_t>{300, 0}));
   EXPECT_EQ(artifacts_.complete[sha256(mesh)], mesh);
@@ -57,7 +57,7 @@ TEST_F(Transfer, AKeptPartOfAnotherContentIsSentOnceMoreFromTheBeginning) {
 
 TEST_F(Transfer, AContentThatIsLostFromTheBeginningIsNotSentAgain) {
   artifacts_.hash = [](const std::string&) { return std::string("another"); };
-  const auto digest = upload_mesh(connection_, folder_.write("mesh.stl", "mesh"));
+  const auto digest = upload_input(connection_, folder_.write("mesh.stl", "mesh"));
   ASSERT_FALSE(digest.ok());
   EXPECT_EQ(digest.failure().kind, FailureKind::kInput);
   EXPECT_EQ(artifacts_.upload_offsets.size(), 1u);
@@ -65,16 +65,16 @@ TEST_F(Transfer, AContentThatIsLostFromTheBeginningIsNotSentAgain) {
 
 TEST_F(Transfer, WhatTheServerHasIsNotSentAgain) {
   artifacts_.complete[sha256("mesh")] = "mesh";
-  ASSERT_TRUE(upload_mesh(connection_, folder_.write("mesh.stl", "mesh")).ok());
+  ASSERT_TRUE(upload_input(connection_, folder_.write("mesh.stl", "mesh")).ok());
   EXPECT_TRUE(artifacts_.upload_offsets.empty());
 }
 
 TEST_F(Transfer, AMeshFileThatCannotBeReadIsToldInOneSentence) {
-  EXPECT_EQ(upload_mesh(connection_, folder_.path() / "none.stl").failure().kind, FailureKind::kInput);
-  EXPECT_THAT(upload_mesh(connection_, folder_.path() / "none.stl").failure().message,
+  EXPECT_EQ(upload_input(connection_, folder_.path() / "none.stl").failure().kind, FailureKind::kInput);
+  EXPECT_THAT(upload_input(connection_, folder_.path() / "none.stl").failure().message,
               testing::HasSubstr("none.stl"));
-  EXPECT_EQ(upload_mesh(connection_, folder_.path()).failure().kind, FailureKind::kInput);
-  EXPECT_THAT(upload_mesh(connection_, folder_.write("empty.stl", "")).failure().message,
+  EXPECT_EQ(upload_input(connection_, folder_.path()).failure().kind, FailureKind::kInput);
+  EXPECT_THAT(upload_input(connection_, folder_.write("empty.stl", "")).failure().message,
               testing::HasSubstr("is empty"));
 }
 

@@ -82,11 +82,34 @@ TEST(SpecValidation, TheInputIsAMeshByItsHash) {
 
 TEST(SpecValidation, WhatIsNotBuiltIsUnimplementedByName) {
   constexpr auto kUnimplemented = absl::StatusCode::kUnimplemented;
-  expect_refused([](auto& s) { s.set_frame_problem_sha256(std::string(64, 'a')); }, "frame_problem_sha256",
-                 kUnimplemented);
-  expect_refused([](auto& s) { s.set_warm_start_job_id("j"); }, "warm_start_job_id", kUnimplemented);
   expect_refused([](auto& s) { s.mutable_options()->set_smooth(v1::SMOOTH_ON); }, "smooth", kUnimplemented);
   expect_refused([](auto& s) { s.mutable_options()->set_orient(v1::ORIENT_BEST); }, "orient", kUnimplemented);
+}
+
+TEST(SpecValidation, AFrameProblemStandsAloneAndWhatStandsBesideItIsNamed) {
+  const auto with = [](const std::function<void(v1::JobSpec&)>& change) {
+    return [change](v1::JobSpec& spec) {
+      spec.set_frame_problem_sha256(std::string(64, 'b'));
+      spec.clear_printers();
+      spec.mutable_options();  // there, but says nothing
+      change(spec);
+    };
+  };
+  expect_good(with([](auto&) {}));
+  expect_good(with([](auto& s) { s.set_priority(3); }));
+  expect_refused(with([](auto& s) { s.set_frame_problem_sha256("abc"); }), "spec.frame_problem_sha256");
+  expect_refused(with([](auto& s) { s.add_printers()->set_printer_id("sinterstation-hiq"); }),
+                 "spec.printers names \"sinterstation-hiq\"");
+  expect_refused(with([](auto& s) { *s.add_loads() = good_load(); }), "spec.loads[0]");
+  expect_refused(with([](auto& s) { s.mutable_options()->set_size_mm(200); }), "options.size_mm");
+  expect_refused(with([](auto& s) { s.mutable_options()->set_no_optimize(true); }), "options.no_optimize");
+  expect_refused(with([](auto& s) { s.set_warm_start_job_id("j"); }), "spec.warm_start_job_id");
+  expect_refused(with([](auto& s) { s.set_priority(101); }), "spec.priority");
+}
+
+TEST(SpecValidation, AnIdToStartFromIsBounded) {
+  expect_good([](auto& s) { s.set_warm_start_job_id(std::string(64, 'a')); });
+  expect_refused([](auto& s) { s.set_warm_start_job_id(std::string(65, 'a')); }, "spec.warm_start_job_id");
 }
 
 TEST(SpecValidation, NumericOptionsHaveTheirDocumentedRanges) {

@@ -73,6 +73,54 @@ TEST_F(SubmitTest, AMeshThatIsNotUploadedIsAFailedPrecondition) {
   EXPECT_EQ(submit(absent).error_code(), grpc::StatusCode::FAILED_PRECONDITION);
 }
 
+TEST_F(SubmitTest, AFrameProblemIsAJobOfItsOwn) {
+  v1::SubmitJobRequest problem;
+  problem.mutable_spec()->set_frame_problem_sha256(std::string(64, '0'));
+  const grpc::Status absent = submit(problem);
+  EXPECT_EQ(absent.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  EXPECT_NE(absent.error_message().find("frame problem"), std::string::npos) << absent.error_message();
+  problem.mutable_spec()->set_frame_problem_sha256(put("{}"));
+  v1::SubmitJobResponse response;
+  ASSERT_TRUE(submit(problem, &response).ok());
+  EXPECT_EQ(response.job().state(), v1::JOB_STATE_QUEUED);
+  problem.set_validate_only(true);
+  ASSERT_TRUE(submit(problem, &response).ok());
+  EXPECT_EQ(response.checks(0), "the frame problem is uploaded");
+}
+
+TEST_F(SubmitTest, AWarmStartNamesASucceededJobWhoseFilesTheWorkerGetsEvenWhenThatJobIsDeleted) {
+  auto warm = request();
+  warm.mutable_spec()->set_warm_start_job_id("nobody");
+  EXPECT_EQ(submit(warm).error_code(), grpc::StatusCode::NOT_FOUND);
+  const std::string earlier = submit();
+  warm.mutable_spec()->set_warm_start_job_id(earlier);
+  const grpc::Status early = submit(warm);
+  EXPECT_EQ(early.error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  EXPECT_NE(early.error_message().find("QUEUED"), std::string::npos) << early.error_message();
+
+  v1::CompleteRequest done = outcome(lease(), v1::JOB_STATE_SUCCEEDED);
+  done.clear_files();
+  v1::ResultFile& file = *done.add_files();
+  file.set_path("sinterstation-hiq/initial-frame.json");
+  file.set_sha256(put("a frame"));
+  file.set_size_bytes(7);
+  ASSERT_TRUE(complete(done).ok());
+
+  auto other_mesh = warm;
+  other_mesh.mutable_spec()->set_mesh_sha256(put("another mesh"));
+  EXPECT_EQ(submit(other_mesh).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  ASSERT_TRUE(submit(warm).ok());
+  grpc::ClientContext context;
+  v1::DeleteJobRequest forget;
+  forget.set_job_id(earlier);
+  v1::DeleteJobResponse forgotten;
+  ASSERT_TRUE(jobs_->DeleteJob(&context, forget, &forgotten).ok());
+  restart();
+  const v1::Assignment assignment = lease();
+  ASSERT_EQ(assignment.warm_start_files_size(), 1);
+  EXPECT_EQ(assignment.warm_start_files(0).SerializeAsString(), file.SerializeAsString());
+}
+
 TEST_F(SubmitTest, AFullQueueIsResourceExhaustedWithATimeToRetry) {
   server_.reset();
   options_.queue_limit = 1;

@@ -45,6 +45,30 @@ TEST_F(WorkerServiceTest, AnAssignmentHasAllThatTheWorkNeeds) {
   EXPECT_EQ(from_timestamp(assignment.deadline()), clock_.now() + std::chrono::seconds(60));
 }
 
+TEST_F(WorkerServiceTest, AFramesResultIsKeptAndOnlyAFrameProblemHasOne) {
+  submit();
+  v1::CompleteRequest wrong = outcome(lease(), v1::JOB_STATE_SUCCEEDED);
+  wrong.mutable_frame()->set_mechanics("paper");
+  EXPECT_EQ(complete(wrong).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+
+  v1::SubmitJobRequest problem;
+  problem.mutable_spec()->set_frame_problem_sha256(put("{}"));
+  ASSERT_TRUE(submit(problem).ok());
+  v1::CompleteRequest infeasible = outcome(lease(), v1::JOB_STATE_FAILED, v1::REASON_INFEASIBLE);
+  v1::FrameResult& frame = *infeasible.mutable_frame();
+  frame.set_mechanics("axial");
+  frame.set_best_reachable_displacement_mm(0.07);
+  frame.add_stages()->set_stage("size");
+  v1::CompleteRequest long_word = infeasible;
+  long_word.mutable_frame()->mutable_stages(0)->set_stage(std::string(129, 'x'));
+  EXPECT_EQ(complete(long_word).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+  ASSERT_TRUE(complete(infeasible).ok());
+  restart();
+  const v1::Job kept = job(infeasible.job_id());
+  EXPECT_EQ(kept.frame().SerializeAsString(), frame.SerializeAsString());
+  EXPECT_EQ(kept.reason(), v1::REASON_INFEASIBLE);
+}
+
 TEST_F(WorkerServiceTest, NothingToDoIsAnEmptyAnswer) {
   v1::LeaseRequest request = long_poll();
   request.clear_wait();

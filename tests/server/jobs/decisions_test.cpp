@@ -216,6 +216,20 @@ TEST(Deadline, EndsAQueuedJobAndStopsARunningOne) {
   EXPECT_EQ(stopped.job.reason(), v1::REASON_TIMED_OUT);
 }
 
+TEST(WarmStart, IsFromASucceededJobOfTheSameMeshOnly) {
+  const v1::JobSpec same = queued().job.spec();
+  EXPECT_TRUE(absl::IsFailedPrecondition(permit_warm_start(queued(), same)));
+  EXPECT_TRUE(absl::IsFailedPrecondition(permit_warm_start(running(), same)));
+  JobRecord done = running();
+  done.job.set_state(v1::JOB_STATE_SUCCEEDED);
+  EXPECT_TRUE(permit_warm_start(done, same).ok());
+  v1::JobSpec other = same;
+  other.set_mesh_sha256(std::string(64, 'b'));
+  EXPECT_TRUE(absl::IsInvalidArgument(permit_warm_start(done, other)));
+  done.job.mutable_spec()->set_frame_problem_sha256(std::string(64, 'a'));
+  EXPECT_TRUE(absl::IsInvalidArgument(permit_warm_start(done, same)));
+}
+
 TEST(Delete, IsForEndedJobsOnly) {
   EXPECT_TRUE(absl::IsFailedPrecondition(permit_delete(queued())));
   EXPECT_TRUE(absl::IsFailedPrecondition(permit_delete(running())));

@@ -61,6 +61,7 @@ TEST_P(JobStoreConformance, WhatWasWrittenIsReadBackWholeAlsoAfterReopening) {
   job.record.request_id = "request";
   job.record.deadline = kNoon + Milliseconds(1234);
   (*job.record.job.mutable_spec()->mutable_labels())["farm"] = "north";
+  job.record.warm_start_files.emplace_back().set_path("p/initial-frame.json");
   const auto created = store_->create(job, kNoLimit);
   ASSERT_TRUE(created.ok()) << created.status();
   ASSERT_TRUE(lease());
@@ -78,6 +79,8 @@ TEST_P(JobStoreConformance, WhatWasWrittenIsReadBackWholeAlsoAfterReopening) {
   EXPECT_EQ(record->lease.expires, kNoon + kPolicy.lease);
   ASSERT_EQ(record->printers.size(), 1u);
   EXPECT_EQ(record->materials.at(0).id(), "pa");
+  ASSERT_EQ(record->warm_start_files.size(), 1u);
+  EXPECT_EQ(record->warm_start_files[0].path(), "p/initial-frame.json");
 }
 
 TEST_P(JobStoreConformance, AnUnknownJobIsNotFound) {

@@ -33,7 +33,7 @@ v1::Assignment minimal() {
 }
 
 json translated(const v1::Assignment& a) {
-  const auto text = job_request_json(a, "/w/mesh", 2);
+  const auto text = job_request_json(a, "/w/mesh", {}, 2);
   EXPECT_TRUE(text.ok()) << text.error().message;
   return text.ok() ? json::parse(*text) : json();
 }
@@ -82,25 +82,48 @@ TEST(AssignmentTranslation, ALoadActsAtAPlaceOrAtAPointNeverBoth) {
   EXPECT_EQ(loads[1]["radius_mm"], 8.0);
 }
 
-TEST(AssignmentTranslation, WhatThisWorkerDoesNotBuildIsRefusedByName) {
-  auto problem = minimal();
-  problem.mutable_spec()->set_frame_problem_sha256(std::string(64, 'b'));
-  EXPECT_EQ(job_request_json(problem, "/w/mesh", 1).error().kind, ErrorKind::kUnsupported);
+TEST(AssignmentTranslation, AFrameProblemIsItsFileAndNothingElse) {
+  v1::Assignment a;
+  a.set_job_id("j1");
+  a.mutable_spec()->set_frame_problem_sha256(std::string(64, 'b'));
+  a.mutable_spec()->set_mesh_name("frame.json");
+  EXPECT_EQ(input_sha256(a.spec()), std::string(64, 'b'));
+  EXPECT_EQ(translated(a), json::parse(R"({"job_id": "j1", "frame_problem_path": "/w/mesh",
+                                           "mesh_name": "frame.json", "threads": 2})"));
+}
+
+TEST(AssignmentTranslation, OfTheEarlierJobsFilesTheInitialFramesAreTakenByPrinter) {
   auto warm = minimal();
   warm.mutable_spec()->set_warm_start_job_id("j0");
-  EXPECT_EQ(job_request_json(warm, "/w/mesh", 1).error().kind, ErrorKind::kUnsupported);
+  for (const char* path :
+       {"report.json", "sinterstation-hiq/frame.json", "sinterstation-hiq/initial-frame.json"})
+    warm.add_warm_start_files()->set_path(path);
+  const auto chosen = choose_warm_start_files(warm);
+  ASSERT_EQ(chosen.size(), 1u);
+  EXPECT_EQ(chosen.begin()->first, "sinterstation-hiq");
+  const auto text = job_request_json(warm, "/w/mesh", {{"sinterstation-hiq", "/w/warm-start/0.json"}}, 1);
+  ASSERT_TRUE(text.ok());
+  EXPECT_EQ(json::parse(*text)["warm_start"],
+            json::parse(R"({"job_id": "j0", "files": {"sinterstation-hiq": "/w/warm-start/0.json"}})"));
+  EXPECT_FALSE(translated(minimal()).contains("warm_start"));
+}
+
+TEST(AssignmentTranslation, WhatIsNeitherMeshNorFrameProblemIsRefused) {
+  auto neither = minimal();
+  neither.mutable_spec()->clear_input();
+  EXPECT_EQ(job_request_json(neither, "/w/mesh", {}, 1).error().kind, ErrorKind::kUnsupported);
 }
 
 TEST(AssignmentTranslation, AServerThatBreaksTheProtocolIsTold) {
   auto unequal = minimal();
   unequal.add_printers();
-  EXPECT_EQ(job_request_json(unequal, "/w/mesh", 1).error().kind, ErrorKind::kInternal);
+  EXPECT_EQ(job_request_json(unequal, "/w/mesh", {}, 1).error().kind, ErrorKind::kInternal);
   auto unknown = minimal();
   unknown.mutable_spec()->mutable_options()->set_up(static_cast<v1::Axis>(9));
-  EXPECT_EQ(job_request_json(unknown, "/w/mesh", 1).error().kind, ErrorKind::kInternal);
+  EXPECT_EQ(job_request_json(unknown, "/w/mesh", {}, 1).error().kind, ErrorKind::kInternal);
   auto nowhere = minimal();
   nowhere.mutable_spec()->add_loads()->set_name("side");
-  EXPECT_EQ(job_request_json(nowhere, "/w/mesh", 1).error().kind, ErrorKind::kInternal);
+  EXPECT_EQ(job_request_json(nowhere, "/w/mesh", {}, 1).error().kind, ErrorKind::kInternal);
 }
 
 }  // namespace

@@ -88,5 +88,36 @@ TEST(OutcomeFile, OnlyAnEndIsAnOutcome) {
   EXPECT_FALSE(parse_outcome("{\"state\": \"SUCC").ok());
 }
 
+TEST(OutcomeFile, AFramesResultKeepsItsStagesAndWhatIsNotKnownStaysAbsent) {
+  const auto outcome =
+      parse_outcome(R"({"state": "FAILED", "reason": "INFEASIBLE", "detail": "too weak", "printers": [],
+      "frame": {"mechanics": "axial", "max_displacement_mm": null, "violated_constraint": "displacement",
+                "best_reachable_displacement_mm": 0.07, "iterations": 31,
+                "stages": [{"stage": "size", "frame_volume_mm3": 16.5, "nodes": 4, "struts": 6}]}})");
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  ASSERT_TRUE(outcome->frame);
+  EXPECT_FALSE(outcome->frame->has_max_displacement_mm());
+  EXPECT_FALSE(outcome->frame->has_lower_bound_mm3());
+  EXPECT_DOUBLE_EQ(outcome->frame->best_reachable_displacement_mm(), 0.07);
+  EXPECT_EQ(outcome->frame->violated_constraint(), "displacement");
+  ASSERT_EQ(outcome->frame->stages_size(), 1);
+  EXPECT_EQ(outcome->frame->stages(0).struts(), 6);
+}
+
+TEST(OutcomeFile, AFramesResultThatIsHostileIsRefusedByItsField) {
+  for (const auto& [frame, names] : std::initializer_list<std::pair<const char*, const char*>>{
+           {R"([])", "frame"},
+           {R"({"stages": 3})", "stages"},
+           {R"({"stages": [3]})", "frame.stages"},
+           {R"({"stages": [{"nodes": -1}]})", "nodes"},
+           {R"({"iterations": 1.5})", "iterations"},
+           {R"({"max_axial_ratio": "x"})", "max_axial_ratio"},
+           {R"({"stages": [{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}]})", "16"}}) {
+    const auto outcome = parse_outcome(std::string(R"({"state": "SUCCEEDED", "frame": )") + frame + "}");
+    ASSERT_FALSE(outcome.ok()) << frame;
+    EXPECT_THAT(outcome.error().message, testing::HasSubstr(names));
+  }
+}
+
 }  // namespace
 }  // namespace skinframe::agent

@@ -41,6 +41,15 @@ TEST(ReadJob, EveryFieldArrives) {
   EXPECT_EQ(job->threads, 2);
 }
 
+TEST(ReadJob, AFrameProblemIsItsFileAndAName) {
+  const auto job = parse_job(json::parse(
+      R"({"job_id": "j1", "frame_problem_path": "/w/problem.json", "mesh_name": "tower.json", "threads": 1})"));
+  ASSERT_TRUE(job.ok()) << job.error().message;
+  EXPECT_EQ(job->frame_problem, "/w/problem.json");
+  EXPECT_EQ(job->request.mesh_name, "tower.json");
+  EXPECT_FALSE(parse_job(valid_job())->frame_problem);
+}
+
 struct Spoiled {
   const char* what;
   json patch;

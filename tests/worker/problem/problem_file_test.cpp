@@ -104,7 +104,129 @@ INSTANTIATE_TEST_SUITE_P(
                    d["balance_half_planes"] = json(417, json{{"normal", {1, 0}}, {"offset_mm", 9}});
                  },
                  "balance_half_planes: 417 entries, at most 416 are taken"},
-        BadField{[](json& d) { d = json::array(); }, "problem: must be an object"}));
+        BadField{[](json& d) { d = json::array(); }, "problem: must be an object"},
+        BadField{[](json& d) { d["mechanics"] = nullptr; }, "mechanics: must be a string"},
+        BadField{[](json& d) { d.erase("mechanics"); }, "mechanics: is missing"},
+        BadField{[](json& d) { d["mechanics"] = "timoshenko"; }, "use \"paper\" or \"axial\""},
+        BadField{[](json& d) { d["material"] = 3; }, "material: must be an object"},
+        BadField{[](json& d) { d["material"].erase("tensile_modulus_mpa"); },
+                 "material.tensile_modulus_mpa: is missing"},
+        BadField{[](json& d) { d["material"]["tensile_modulus_mpa"] = 0; },
+                 "material.tensile_modulus_mpa: must be positive"},
+        BadField{[](json& d) {
+                   d["mechanics"] = "paper";
+                   d["material"].erase("shear_modulus_mpa");
+                 },
+                 "material.shear_modulus_mpa: is missing"},
+        BadField{[](json& d) { d["material"]["tensile_strength_mpa"] = "strong"; },
+                 "material.tensile_strength_mpa: must be a number"},
+        BadField{[](json& d) { d["material"]["shear_strength_mpa"] = 0; },
+                 "material.shear_strength_mpa: must be positive, or null"},
+        BadField{[](json& d) { d["material"]["slenderness"] = -60; },
+                 "material.slenderness: must be positive"},
+        BadField{[](json& d) { d["material"]["density_g_cm3"] = -1; },
+                 "material.density_g_cm3: must not be negative"},
+        BadField{[](json& d) {
+                   d["nodes"] = {{"x", 1}};
+                 },
+                 "nodes: must be a list"},
+        BadField{[](json& d) { d["nodes"][3] = d["nodes"][2]; }, "struts[4]: its ends 2 and 3 coincide"},
+        BadField{[](json& d) { d["struts"][5] = 7; }, "struts[5]: must be an object"},
+        BadField{[](json& d) { d["struts"][0]["skin"] = 1; }, "struts[0].skin: must be true or false"},
+        BadField{[](json& d) { d["struts"][0]["b"] = 4294967296; }, "struts[0].b: 4294967296 is not a node"},
+        BadField{[](json& d) { d["struts"][2]["min_radius_mm"] = 6; }, "struts[2]: radius bounds 6..5"},
+        BadField{[](json& d) { d["struts"][2]["min_radius_mm"] = -1; }, "struts[2]: radius bounds"},
+        BadField{[](json& d) { d["struts"][2]["max_radius_mm"] = nullptr; },
+                 "struts[2].max_radius_mm: must be a number"},
+        BadField{[](json& d) {
+                   d["struts"][5]["a"] = 1;
+                   d["struts"][5]["b"] = 0;
+                 },
+                 "struts[5]: joins nodes 0 and 1, as struts[0] does already"},
+        BadField{[](json& d) { d["struts"] = json::array(); }, "struts"},
+        BadField{[](json& d) {
+                   d["skin_triangles"] = {{0, 1}};
+                 },
+                 "skin_triangles[0]: must name three nodes"},
+        BadField{[](json& d) {
+                   d["skin_triangles"] = {{0, 1, 4}};
+                 },
+                 "skin_triangles[0][2]: 4 is not a node"},
+        BadField{[](json& d) {
+                   d["skin_weight_n"] = {1, 2};
+                 },
+                 "skin_weight_n: 2 entries for 4 nodes"},
+        BadField{[](json& d) {
+                   d["skin_weight_n"] = {0, 0, 0, -1};
+                 },
+                 "skin_weight_n[3]: must not be negative"},
+        BadField{[](json& d) {
+                   d["skin_mass"] = {{"weight_n", 1}};
+                 },
+                 "skin_mass.centroid_mm: is missing"},
+        BadField{
+            [](json& d) { d["balance_half_planes"] = json::parse(R"([{"normal":[1,1],"offset_mm":0}])"); },
+            "balance_half_planes[0]: the normal must be of unit length"},
+        BadField{[](json& d) { d["fixed"] = nullptr; }, "fixed: must be a list"},
+        BadField{[](json& d) { d["fixed"][0].erase("axes"); }, "fixed[0].axes: is missing"},
+        BadField{[](json& d) { d["load_cases"][0]["gravity"] = "yes"; },
+                 "load_cases[0].gravity: must be true or false"},
+        BadField{[](json& d) { d["load_cases"][0]["name"] = 7; }, "load_cases[0].name: must be a string"},
+        BadField{[](json& d) { d["load_cases"][0]["forces"][0]["node"] = 9; },
+                 "load_cases[0].forces[0].node: 9 is not a node (0..3)"},
+        BadField{[](json& d) { d["load_cases"][0]["forces"][0].erase("force_n"); },
+                 "load_cases[0].forces[0].force_n: is missing"},
+        BadField{[](json& d) {
+                   while (d["nodes"].size() < 10'001) d["nodes"].push_back({1.0 * d["nodes"].size(), 0, 9});
+                   d["load_cases"] = json(1000, json::object());
+                 },
+                 "load_cases: 1000 entries, at most 999 are taken"},
+        BadField{[](json& d) { d["displacement_limit_mm"] = true; },
+                 "displacement_limit_mm: must be a number"},
+        BadField{[](json& d) { d["free_nodes"] = {7}; }, "free_nodes[0]: 7 is not a node (0..3)"},
+        BadField{[](json& d) { d["free_nodes"] = {3}; }, "free_nodes: node 3 is loaded"},
+        BadField{[](json& d) { d["stages"] = "size"; }, "stages: must be a list"}));
+
+TEST(ProblemFile, WhatIsNullIsOff) {
+  json document = sample_problem();
+  for (const char* limit : {"tensile_strength_mpa", "shear_strength_mpa", "slenderness"})
+    document["material"][limit] = nullptr;
+  document["displacement_limit_mm"] = nullptr;
+  document["skin_weight_n"] = document["balance_half_planes"] = document["stages"] = document["order"] =
+      nullptr;
+  const auto file = parse_problem(document);
+  ASSERT_TRUE(file.ok()) << file.error().message;
+  EXPECT_FALSE(file->problem.material.tensile_strength_mpa);
+  EXPECT_FALSE(file->problem.material.slenderness);
+  EXPECT_FALSE(file->problem.displacement_limit_mm);
+  EXPECT_TRUE(file->options.geometry);
+}
+
+// Such files take gigabytes once they are a tree.
+TEST(ProblemFile, DepthAndNumberOfValuesAreBoundedBeforeATreeIsMade) {
+  const std::string path = ::testing::TempDir() + "deep-problem.json";
+  std::ofstream(path) << "{\"x\": " << std::string(1'000'000, '[');
+  const auto deep = read_problem(path, "deep.json");
+  ASSERT_FALSE(deep.ok());
+  EXPECT_EQ(deep.error().message, "deep.json: nested more than 16 deep");
+  {
+    std::ofstream wide(path);
+    wide << "{\"x\": [";
+    const std::string zeros = [] {
+      std::string text;
+      for (int i = 0; i < 1'000'000; ++i) text += "0,";
+      return text;
+    }();
+    for (int i = 0; i < 31; ++i) wide << zeros;
+    wide << "0]}";
+  }
+  const auto wide = read_problem(path, "wide.json");
+  ASSERT_FALSE(wide.ok());
+  EXPECT_EQ(wide.error().message, "wide.json: more than 30000000 values");
+  std::ofstream(path) << "{\"x\": 1e999}";
+  EXPECT_THAT(read_problem(path, "large.json").error().message, HasSubstr("not valid JSON"));
+  std::filesystem::remove(path);
+}
 
 TEST(ProblemFile, MissingFileAndBrokenJsonAreOneSentence) {
   const auto missing = read_problem(::testing::TempDir() + "there-is-no-such-problem.json");

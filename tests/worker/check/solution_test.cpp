@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The check of a frame job's result: yes to what the job wrote, and no to each lie told in a copy of it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "tests/worker/pipeline/small_job.h"
+#include "tests/worker/problem/sample_problem.h"
+#include "worker/check/check.h"
+#include "worker/job/run_frame_job.h"
+
+namespace skinframe::check {
+namespace {
+
+using nlohmann::json;
+using Names = std::vector<std::string>;
+
+// A tripod of the paper's struts that has to stand: the plate ends just left of where the load case leans.
+json standing_tripod() {
+  json problem = skinframe::testing::sample_problem();
+  problem["mechanics"] = "paper";
+  problem["material"]["shear_strength_mpa"] = 48;
+  problem["load_cases"][0]["gravity"] = true;
+  problem["balance_half_planes"] = json::parse(R"([{"normal": [1, 0], "offset_mm": 40}])");
+  return problem;
+}
+
+class SolutionTest : public ::testing::Test {
+ protected:
+  void solve(const json& problem) {
+    std::ofstream(folder_.path() / "problem.json") << problem;
+    JobFile file;
+    file.frame_problem = folder_.path() / "problem.json";
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> nowhere(std::tmpfile(), std::fclose);
+    EventStream events(nowhere.get());
+    run_frame_job(file, folder_.path(), events, RunContext{});
+  }
+  // The claims that do not hold after `lie` changed the file; the file is as before afterwards.
+  Names denied(const char* name, const std::function<void(json&)>& lie) {
+    const json honest = read(name);
+    json changed = honest;
+    lie(changed);
+    write(name, changed);
+    Names names;
+    for (const Claim& claim : claims())
+      if (!claim.holds) names.push_back(claim.name);
+    write(name, honest);
+    return names;
+  }
+  std::vector<Claim> claims() {
+    RunContext context;
+    const auto verdicts = check_directory(folder_.path(), context);
+    if (!verdicts.ok()) return {{"error: " + verdicts.error().message, false, ""}};
+    return verdicts->front().claims;
+  }
+  Names report_denied(const std::function<void(json&)>& lie) {
+    return denied("report.json", [&](json& report) { lie(report["frame"]); });
+  }
+  Names result_denied(const std::function<void(json&)>& lie) { return denied("result.json", lie); }
+  json read(const char* name) const { return json::parse(std::ifstream(folder_.path() / name)); }
+  void write(const char* name, const json& document) { std::ofstream(folder_.path() / name) << document; }
+
+  test::ScratchFolder folder_;
+};
+
+TEST_F(SolutionTest, AnHonestResultHoldsInEveryClaimAndEachLieIsDenied) {
+  solve(standing_tripod());
+  for (const Claim& claim : claims()) EXPECT_TRUE(claim.holds) << claim.name << ": " << claim.measured;
+  EXPECT_GE(claims().size(), 7u);
+  using ::testing::Contains;
+  EXPECT_THAT(report_denied([](json& f) { f["evaluation"]["frame_volume_mm3"] = 1; }),
+              Contains("volume and counts"));
+  EXPECT_THAT(report_denied([](json& f) { f["counts"]["geometry"]["struts"] = 5; }),
+              Contains("volume and counts"));
+  EXPECT_THAT(report_denied([](json& f) { f["volumes_mm3"]["size"] = 1; }),
+              Contains("no volume rises from stage to stage"));
+  EXPECT_THAT(report_denied([](json& f) { f["lower_bound_mm3"] = 1e9; }),
+              Contains("lower bound below the sized volume"));
+  EXPECT_THAT(report_denied([](json& f) { f["evaluation"]["max_displacement_mm"] = 0.01; }),
+              Contains("displacement (paper model)"));
+  EXPECT_THAT(report_denied([](json& f) { f["evaluation"]["max_axial_ratio"] = 0.9; }),
+              Contains("stresses (paper model)"));
+  EXPECT_THAT(report_denied([](json& f) { f["evaluation"]["balance_margin_mm"] = 99; }), Contains("balance"));
+  EXPECT_THAT(result_denied([](json& r) { r["struts"][0]["radius_mm"] = 0.4; }), Contains("radii"));
+  EXPECT_THAT(result_denied([](json& r) { r["struts"][2]["max_radius_mm"] = 0.501; }), Contains("radii"));
+  EXPECT_THAT(result_denied([](json& r) { r["material"]["slenderness"] = 10; }), Contains("slenderness"));
+  EXPECT_THAT(result_denied([](json& r) { r["displacement_limit_mm"] = 0.01; }),
+              Contains("displacement (paper model)"));
+  EXPECT_THAT(result_denied([](json& r) { r["load_cases"][0]["displacements_mm"][3][2] = 0.01; }),
+              Contains("equilibrium (paper model)"));
+  EXPECT_THAT(result_denied([](json& r) { r["material"]["tensile_strength_mpa"] = 0.01; }),
+              Contains("stresses (paper model)"));
+  EXPECT_THAT(result_denied([](json& r) { r["balance_half_planes"][0]["offset_mm"] = 10; }),
+              Contains("balance"));
+  EXPECT_THAT(result_denied([](json& r) { r["struts"] = json::array(); }), Contains("frame"));
+  EXPECT_THAT(result_denied([](json& r) { r["struts"][0]["a"] = 44; }),
+              Contains(::testing::HasSubstr("44 is not a node")));
+}
+
+TEST_F(SolutionTest, APinJointedFrameIsJudgedByItsOwnModel) {
+  solve(skinframe::testing::sample_problem());
+  for (const Claim& claim : claims()) EXPECT_TRUE(claim.holds) << claim.name << ": " << claim.measured;
+  EXPECT_THAT(result_denied([](json& r) { r["mechanics"] = "paper"; }),
+              ::testing::Contains("equilibrium (paper model)"));
+  EXPECT_THAT(result_denied([](json& r) { r["mechanics"] = "beam"; }),
+              ::testing::Contains(::testing::HasSubstr("\"beam\"")));
+}
+
+TEST_F(SolutionTest, WhatIsCalledInfeasibleHasToBreakTheConstraintThatItNames) {
+  json weak = standing_tripod();
+  weak["load_cases"][0]["forces"][0]["force_n"] = {0, 0, -1e5};
+  solve(weak);
+  for (const Claim& claim : claims()) EXPECT_TRUE(claim.holds) << claim.name << ": " << claim.measured;
+  EXPECT_THAT(report_denied([](json& f) { f["termination"]["violated_constraint"] = "balance"; }),
+              ::testing::Contains("infeasible"));
+  EXPECT_THAT(report_denied([](json& f) { f["termination"]["best_reachable_displacement_mm"] = 0.06; }),
+              ::testing::Contains("best reachable displacement (paper model)"));
+}
+
+}  // namespace
+}  // namespace skinframe::check

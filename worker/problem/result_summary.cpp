@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/problem/result_summary.h"
+
+namespace skinframe {
+
+nlohmann::json result_summary(const nlohmann::json& result) {
+  nlohmann::json summary = result;
+  for (const char* one_each :
+       {"nodes", "struts", "fixed", "load_cases", "free_nodes", "skin_weight_n", "skin_mass",
+        "balance_half_planes", "skin_triangles", "node_origin", "strut_origin"})
+    summary.erase(one_each);
+  return summary;
+}
+
+}  // namespace skinframe
