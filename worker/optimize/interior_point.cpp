@@ -38,7 +38,7 @@ class InteriorPoint {
       : program_(program),
         options_(options),
         layout_(program),
-        kkt_(program_, layout_),
+        kkt_(program_, layout_, options.team, options.cancelled),
         line_search_(program_, layout_),
         barrier_(options.initial_barrier, kSmallestBarrierShare * options.tolerance),
         iterate_(start_iterate(program_, layout_, std::move(start), options.initial_barrier)) {}
@@ -47,13 +47,19 @@ class InteriorPoint {
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       const KktError error = kkt_error(program_, layout_, iterate_, 0);
       if (!options_.each(record(iteration, error))) return result(InteriorPointEnd::kCancelled, iteration);
-      if (error.worst() <= options_.tolerance) return result(InteriorPointEnd::kOptimal, iteration);
-      if (best_will_do(iteration, error)) return result(InteriorPointEnd::kAcceptable, iteration);
+      keep_best(iteration, error);
+      if (const auto end =
+              converged({error.worst(), best_error_, iteration - best_at_}, options_.tolerance)) {
+        if (*end == InteriorPointEnd::kAcceptable) iterate_ = *best_;
+        return result(*end, iteration);
+      }
       if (options_.good_enough(iterate_.point, error))
         return result(InteriorPointEnd::kGoodEnough, iteration);
 
       update_barrier();
-      if (!factorise()) return result(InteriorPointEnd::kStuck, iteration);
+      if (!factorise())
+        return result(options_.cancelled() ? InteriorPointEnd::kCancelled : InteriorPointEnd::kStuck,
+                      iteration);
       const NewtonStep step = newton_step();
       if (auto accepted = line_search_.search(iterate_, step, barrier_.value()))
         move_to(std::move(*accepted), step);
@@ -64,16 +70,11 @@ class InteriorPoint {
   }
 
  private:
-  bool best_will_do(int iteration, const KktError& error) {
-    if (!best_ || error.worst() < best_error_) {
-      best_ = iterate_;
-      best_error_ = error.worst();
-      best_at_ = iteration;
-    }
-    if (best_error_ > kAcceptableFactor * options_.tolerance || iteration < best_at_ + kPatience)
-      return false;
-    iterate_ = *best_;
-    return true;
+  void keep_best(int iteration, const KktError& error) {
+    if (best_ && !(error.worst() < best_error_)) return;
+    best_ = iterate_;
+    best_error_ = error.worst();
+    best_at_ = iteration;
   }
 
   void update_barrier() {
@@ -85,9 +86,10 @@ class InteriorPoint {
 
   bool factorise() {
     regularisation_ = inertia_.first();
-    for (;;) {
+    for (factorisations_ = 1;; ++factorisations_) {
       kkt_.assemble(iterate_, barrier_.value(), regularisation_);
       if (kkt_.factorise()) break;
+      if (options_.cancelled()) return false;
       const auto stronger = inertia_.next();
       if (!stronger) return false;
       regularisation_ = *stronger;
@@ -103,8 +105,9 @@ class InteriorPoint {
     return step;
   }
 
-  void move_to(Iterate accepted, const NewtonStep& step) {
-    iterate_ = std::move(accepted);
+  void move_to(LineSearch::Accepted accepted, const NewtonStep& step) {
+    iterate_ = std::move(accepted.iterate);
+    taken_ = {accepted.length, step.dual_length, accepted.halvings};
     iterate_.duals += step.dual_length * step.duals;
     keep_duals_near_path(iterate_, barrier_.value(), kDualSpread);
   }
@@ -113,6 +116,7 @@ class InteriorPoint {
   // step.
   bool restore(const NewtonStep& step) {
     if (++restorations_ > kMostRestorations) return false;
+    taken_ = {};
     options_.restore_equilibrium(iterate_.point);
     const VectorXd c = inequalities(program_, layout_, iterate_.point);
     const double floor = std::max(1e-3 * barrier_.value(), 1e-8);
@@ -131,7 +135,11 @@ class InteriorPoint {
             objective(program_, iterate_.point),
             program_volume(program_, iterate_.point),
             error,
-            regularisation_.primal};
+            regularisation_.primal,
+            taken_.primal_length,
+            taken_.dual_length,
+            taken_.halvings,
+            factorisations_};
   }
 
   InteriorPointResult result(InteriorPointEnd end, int iterations) const {
@@ -151,6 +159,11 @@ class InteriorPoint {
   double best_error_ = 0;
   int best_at_ = 0;
   int restorations_ = 0;
+  int factorisations_ = 0;  // of the last step
+  struct Taken {
+    double primal_length = 0, dual_length = 0;
+    int halvings = 0;
+  } taken_;
 };
 
 }  // namespace

@@ -30,7 +30,8 @@ bool LineSearch::acceptable(const Measure& trial) const {
   });
 }
 
-std::optional<Iterate> LineSearch::search(const Iterate& it, const NewtonStep& step, double barrier) {
+std::optional<LineSearch::Accepted> LineSearch::search(const Iterate& it, const NewtonStep& step,
+                                                       double barrier) {
   const Measure here = measure(it, barrier);
   if (!largest_violation_) {
     largest_violation_ = kLargestViolation * std::max(1.0, here.violation);
@@ -53,10 +54,11 @@ std::optional<Iterate> LineSearch::search(const Iterate& it, const NewtonStep& s
         slope < 0 && here.violation <= *small_violation_ &&
         length * std::pow(-slope, kMeritPower) > std::pow(here.violation, kViolationPower);
     if (objective_leads) {
-      if (there.merit <= here.merit + kArmijo * length * slope + rounding) return trial;
+      if (there.merit <= here.merit + kArmijo * length * slope + rounding)
+        return Accepted{std::move(trial), length, halving};
     } else if (there.violation <= margin.violation || there.merit <= margin.merit + rounding) {
       filter_.push_back(margin);
-      return trial;
+      return Accepted{std::move(trial), length, halving};
     }
   }
   return std::nullopt;

@@ -20,8 +20,13 @@ class LineSearch {
     filter_.clear(), largest_violation_.reset();
   }  // the barrier, and with it the merit, has changed
 
-  // The accepted trial with its point and slacks moved (duals are as before), or none.
-  std::optional<Iterate> search(const Iterate& iterate, const NewtonStep& step, double barrier);
+  // An accepted trial: point and slacks moved, duals as before.
+  struct Accepted {
+    Iterate iterate;
+    double length;
+    int halvings;
+  };
+  std::optional<Accepted> search(const Iterate& iterate, const NewtonStep& step, double barrier);
 
  private:
   struct Measure {

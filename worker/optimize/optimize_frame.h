@@ -48,6 +48,8 @@ struct OptimizeOptions {
   // 1e-3].
   double kkt_tolerance = 1e-7;
   int max_interior_point_iterations = 300;  // of one program, > 0
+  // Gets a line for each iteration of each program, and a heading before. Empty: no log.
+  std::function<void(const std::string&)> log;
 
   // A frame is feasible when every ratio <= 1 + feasibility_tolerance, range (0, 1e-2].
   double feasibility_tolerance = 1e-6;

@@ -20,8 +20,14 @@ ProgramOutcome Session::solve(const FrameProblem& problem, ProgramRequest reques
     if (context_.report)
       context_.report(
           {stage_, stage_iteration_++, scaled.volume_mm3(record.volume), record.error.primal, struts});
+    if (options_.log) {
+      if (record.iteration == 0) options_.log(iteration_log_header());
+      options_.log(iteration_log_line(record));
+    }
     return !context_.cancelled();
   };
+  options.cancelled = [&] { return context_.cancelled(); };
+  options.team = team_;
   if (good_enough) options.good_enough = std::move(good_enough);
   options.restore_equilibrium = [&](ProgramVector& point) { scaled.restore_equilibrium(point); };
 

@@ -2,6 +2,7 @@
 // One call of optimize_frame: its options, its run context, and what its stages add up.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "worker/optimize/interior_point.h"
@@ -23,7 +24,8 @@ struct ProgramOutcome {
 
 class Session {
  public:
-  Session(const OptimizeOptions& options, RunContext& context) : options_(options), context_(context) {}
+  Session(const OptimizeOptions& options, RunContext& context)
+      : options_(options), context_(context), team_(std::make_shared<ThreadTeam>(context.threads)) {}
 
   const OptimizeOptions& options() const { return options_; }
   bool cancelled() const { return context_.cancelled(); }
@@ -39,6 +41,7 @@ class Session {
  private:
   const OptimizeOptions& options_;
   RunContext& context_;
+  std::shared_ptr<ThreadTeam> team_;
   Stage stage_ = Stage::kSize;
   int stage_iteration_ = 0;
   int iterations_ = 0;
