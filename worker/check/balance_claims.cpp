@@ -81,7 +81,9 @@ Eigen::Vector3d nominal_centre_of_gravity_mm(const ExportedFrame& frame) {
 
 void claim_balance(const ExportedPrinter& result, const TriangleMesh& outer_mesh, Verdict* verdict) {
   const ExportedFrame& frame = result.frame;
-  const Eigen::Vector2d nominal = nominal_centre_of_gravity_mm(frame).head<2>();
+  const Eigen::Vector3d nominal_centre =
+      result.solid() ? volume_centroid(outer_mesh) : nominal_centre_of_gravity_mm(frame);
+  const Eigen::Vector2d nominal = nominal_centre.head<2>();
   const Polygon hull =
       convex_hull(contact_points(outer_mesh, bounding_box(outer_mesh).min.z() + kContactToleranceMm));
   const double nominal_margin = margin_mm(hull, nominal);

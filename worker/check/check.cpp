@@ -13,7 +13,7 @@ namespace {
 
 Verdict judge(const ExportedPrinter& result) {
   Verdict verdict{result.printer, {}, {}};
-  if (result.frame.struts.empty() || result.frame.nodes_mm.empty()) {
+  if (!result.solid() && (result.frame.struts.empty() || result.frame.nodes_mm.empty())) {
     verdict.claims.push_back({"frame", false, "frame.json has no struts"});
     return verdict;
   }
@@ -30,6 +30,11 @@ Verdict judge(const ExportedPrinter& result) {
   }
   const Surface outer(outer_mesh);
   claim_mesh(result, outer_mesh, cavity, outer, &verdict);
+  if (result.solid()) {
+    claim_solid(result, outer_mesh, outer, &verdict);
+    claim_balance(result, outer_mesh, &verdict);
+    return verdict;
+  }
   claim_frame(result, &outer, &verdict);
   claim_printed_struts(result, cavity, outer, &verdict);
   claim_mechanics(result, &verdict);

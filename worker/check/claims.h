@@ -16,6 +16,10 @@ void split_surfaces(const ExportedPrinter& result, TriangleMesh* outer, Triangle
 void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, const TriangleMesh& cavity,
                 const Surface& outer, Verdict* verdict);
 
+// A result called solid: the mesh is M, nothing is counted, and there was indeed nothing to hollow.
+void claim_solid(const ExportedPrinter& result, const TriangleMesh& outer_mesh, const Surface& outer,
+                 Verdict* verdict);
+
 // Radii (9, 10), slenderness (4, 5), triangulation, counts and nominal volumes (12), struts inside M (7).
 void claim_frame(const ExportedPrinter& result, const Surface* outer, Verdict* verdict);
 

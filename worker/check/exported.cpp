@@ -218,10 +218,12 @@ Result<Exported> read_exported(const std::filesystem::path& directory, RunContex
       ExportedPrinter printer = parse_printer(item);
       printer.solid_triangles = report->at("mesh").at("triangles").get<std::size_t>();
       const auto folder = directory / printer.printer;
-      reading = folder / "frame.json";
-      auto frame = read_json(reading);
-      if (!frame) return frame.error();
-      printer.frame = parse_frame(*frame);
+      if (!printer.solid()) {
+        reading = folder / "frame.json";
+        auto frame = read_json(reading);
+        if (!frame) return frame.error();
+        printer.frame = parse_frame(*frame);
+      }
       if (!printer.infeasible()) {
         auto merged = read_mesh(folder / "skin-frame.stl", ReadLimits{}, context);
         if (!merged) return merged.error();

@@ -47,7 +47,7 @@ struct ExportedFrame {
 
 struct ExportedPrinter {
   std::string printer, material;
-  std::string termination;  // "OPTIMAL", "INFEASIBLE", ...
+  std::string termination;  // "OPTIMAL", "INFEASIBLE", "SOLID", ...
   double solid_volume_mm3 = 0, skin_volume_mm3 = 0, frame_volume_mm3 = 0, total_volume_mm3 = 0, ratio = 0;
   double printed_volume_mm3 = 0, printed_ratio = 0, weight_g = 0;
   double size_volume_mm3 = 0, topology_volume_mm3 = 0, geometry_volume_mm3 = 0;
@@ -64,6 +64,7 @@ struct ExportedPrinter {
   std::optional<TriangleMesh> merged;  // vertices welded where equal; absent where the result has no mesh
   bool optimised() const { return termination != "NOT_OPTIMIZED"; }
   bool infeasible() const { return termination == "INFEASIBLE"; }
+  bool solid() const { return termination == "SOLID"; }  // thin everywhere: no frame, no frame.json
 };
 
 struct Exported {

@@ -140,11 +140,13 @@ void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, c
   }
 
   const BoundingBox box = bounding_box(outer_mesh);
-  const SkinSample skin = sample_skin_volume(outer, box, result.skin_thickness_mm, solid);
-  const double allowed = skin.error_mm3 + 0.02 * skin.volume_mm3;
-  verdict->claims.push_back({"skin volume", std::abs(skin.volume_mm3 - result.skin_volume_mm3) <= allowed,
-                             fmt::format("{:.0f} mm3 by sampling (+- {:.0f}), reported {:.0f} mm3",
-                                         skin.volume_mm3, allowed, result.skin_volume_mm3)});
+  if (!result.solid()) {
+    const SkinSample skin = sample_skin_volume(outer, box, result.skin_thickness_mm, solid);
+    const double allowed = skin.error_mm3 + 0.02 * skin.volume_mm3;
+    verdict->claims.push_back({"skin volume", std::abs(skin.volume_mm3 - result.skin_volume_mm3) <= allowed,
+                               fmt::format("{:.0f} mm3 by sampling (+- {:.0f}), reported {:.0f} mm3",
+                                           skin.volume_mm3, allowed, result.skin_volume_mm3)});
+  }
 
   const Eigen::Vector3d extent = box.extent();
   const Eigen::Vector3d tray = result.tray_mm;
@@ -154,6 +156,29 @@ void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, c
   verdict->claims.push_back({"fits the tray", fits,
                              fmt::format("{:.1f} x {:.1f} x {:.1f} mm on a tray of {:g} x {:g} x {:g} mm",
                                          extent.x(), extent.y(), extent.z(), tray.x(), tray.y(), tray.z())});
+}
+
+void claim_solid(const ExportedPrinter& result, const TriangleMesh& outer_mesh, const Surface& outer,
+                 Verdict* verdict) {
+  const double solid = signed_volume(outer_mesh);
+  verdict->claims.push_back(
+      {"solid throughout",
+       near(result.printed_ratio, 1.0, 1e-6) && near(result.ratio, 1.0, 1e-6) &&
+           near(result.total_volume_mm3, solid, 1e-4) && result.frame_volume_mm3 == 0.0 &&
+           result.final_nodes == 0 && result.final_struts == 0 &&
+           result.merged->triangles.size() == outer_mesh.triangles.size(),
+       fmt::format(
+           "{} triangles, {} of them the input's; total {:.1f} of {:.1f} mm3; {} nodes, {} struts reported",
+           result.merged->triangles.size(), outer_mesh.triangles.size(), result.total_volume_mm3, solid,
+           result.final_nodes, result.final_struts)});
+  const SkinSample skin =
+      sample_skin_volume(outer, bounding_box(outer_mesh), result.skin_thickness_mm, solid);
+  const double deep = 1.0 - skin.volume_mm3 / solid;
+  constexpr double kMostHollow = 0.015;  // of the volume; a body is called thin everywhere below 0.01
+  verdict->claims.push_back(
+      {"thin everywhere", deep <= kMostHollow + skin.error_mm3 / solid,
+       fmt::format("{:.4f} of the volume lies deeper than the skin of {:.3g} mm (at most {})", deep,
+                   result.skin_thickness_mm, kMostHollow)});
 }
 
 }  // namespace skinframe::check

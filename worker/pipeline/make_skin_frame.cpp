@@ -5,10 +5,11 @@
 
 #include <algorithm>
 
-#include "worker/mesh/write_stl.h"
+#include "worker/pipeline/make_solid.h"
 #include "worker/pipeline/pose_problem.h"
 #include "worker/pipeline/solve_and_merge.h"
 #include "worker/pipeline/write_json.h"
+#include "worker/pipeline/write_results.h"
 #include "worker/problem/problem_file.h"
 
 namespace skinframe {
@@ -74,7 +75,14 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
   auto skin = build_skin(prepared.solid, SkinOptions{.thickness_mm = printer.skin_thickness_mm()}, context);
   if (!skin) return skin.error();
   skin_volume_mm3 = skin->volume_mm3;
+  report.thin = skin->thin;
   laps.lap("skin");
+  if (skin->is_thin_everywhere()) {
+    auto made = make_solid(prepared, *skin, request, job.options, out_dir / printer.id, &report);
+    if (!made) return made.error();
+    laps.lap("write");
+    return report;
+  }
 
   context.report({.stage = Stage::kSample});
   FrameOptions frame_options;
@@ -116,11 +124,8 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
   if (auto written = write_json(folder / "frame.json", frame_json); !written) return written.error();
   if (!merged.value()) return report;
   const PrintableMesh& printable = *merged.value();
-  if (auto written = write_stl(printable.mesh, folder / "skin-frame.stl"); !written) return written.error();
-  report.voxel_mm = printable.voxel_mm;
-  report.statistics.printed_volume_mm3 = printable.volume_mm3;
-  report.statistics.printed_ratio = printable.volume_mm3 / prepared.solid.volume_mm3();
-  report.statistics.weight_g = printable.volume_mm3 * request.material.density_g_cm3 * 1e-3;
+  if (auto written = write_printable(printable, prepared, request, folder, &report); !written)
+    return written.error();
   laps.lap("write");
   return report;
 }

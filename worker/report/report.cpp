@@ -32,6 +32,19 @@ json tips_json(const OptimizeResult& result) {
   return tips;
 }
 
+json thin_json(const ThinParts& thin) {
+  json regions = json::array();
+  for (const ThinRegion& region : thin.regions)
+    regions.push_back({{"kind", to_string(region.kind)},
+                       {"volume_mm3", region.volume_mm3},
+                       {"mean_thickness_mm", region.mean_thickness_mm},
+                       {"centre_mm", vector_json(region.centre_mm)}});
+  return {{"volume_mm3", thin.volume_mm3},
+          {"fraction", thin.fraction},
+          {"region_count", thin.region_count},
+          {"regions", regions}};
+}
+
 }  // namespace
 
 const char* to_string(Reason reason) {
@@ -115,8 +128,9 @@ json refused_json(const PrinterReport& report) {
 }
 
 json to_json(const PrinterReport& report) {
-  if (!report.optimised) return refused_json(report);
-  const OptimizeResult& result = *report.optimised;
+  if (!report.optimised && !report.is_solid) return refused_json(report);
+  const OptimizeResult no_frame;  // of a solid: nothing counted, nothing loaded
+  const OptimizeResult& result = report.optimised ? *report.optimised : no_frame;
   const Statistics& s = report.statistics;
   json out = {{"printer", report.printer},
               {"material", report.material},
@@ -149,10 +163,11 @@ json to_json(const PrinterReport& report) {
               {"max_shear_ratio", result.evaluation.max_shear_ratio},
               {"min_radius_mm", result.evaluation.min_radius_mm},
               {"balance", s.balance},
-              {"tips", tips_json(result)},
+              {"tips", report.optimised ? tips_json(result) : json::array()},
               {"warnings", report.warnings},
               {"seconds", report.seconds},
               {"termination", {{"reason", report.termination}, {"detail", report.termination_detail}}}};
+  if (report.thin) out["thin"] = thin_json(*report.thin);
   if (s.balance_margin_mm) out["balance_margin_mm"] = *s.balance_margin_mm;
   if (result.lower_bound_mm3) out["lower_bound_mm3"] = *result.lower_bound_mm3;
   if (result.best_reachable_displacement_mm)

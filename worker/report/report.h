@@ -61,9 +61,11 @@ struct PrinterReport {
   Reason reason = Reason::kNone;
   std::string detail;
   Statistics statistics;
-  std::string termination;  // "OPTIMAL", "ITERATION_LIMIT", "NOT_OPTIMIZED", "INFEASIBLE", ...
+  std::string termination;  // "OPTIMAL", "ITERATION_LIMIT", "NOT_OPTIMIZED", "INFEASIBLE", "SOLID", ...
   std::string termination_detail;
   std::optional<OptimizeResult> optimised;
+  std::optional<ThinParts> thin;   // once the skin is built
+  bool is_solid = false;           // thin everywhere: printed as it is, without a frame
   std::optional<double> voxel_mm;  // of the exported mesh
   std::vector<std::string> warnings;
   std::map<std::string, double> seconds;

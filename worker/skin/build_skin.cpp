@@ -91,10 +91,20 @@ Result<Skin> build(const TriangleMesh& mesh, const SkinOptions& options, const R
     return internal_error("the inner surface of the skin is not closed: try another --voxel");
   }
   skin.field = DistanceField(std::move(grids));
+  if (skin.is_thin_everywhere())
+    skin.thin = {volume, 1.0, 0, {}};
+  else
+    skin.thin = find_thin_parts(mesh, skin.field, options.thickness_mm, context);
+  if (context.cancelled()) return cancelled_error();
   return skin;
 }
 
 }  // namespace
+
+bool Skin::is_thin_everywhere() const {
+  return inner_surface.triangles.empty() ||
+         cavity_volume_mm3 < kLeastHollowShare * (volume_mm3 + cavity_volume_mm3);
+}
 
 Status SkinOptions::validate() const {
   if (!(thickness_mm > 0.0) || !std::isfinite(thickness_mm)) {

@@ -12,6 +12,7 @@
 #include "worker/mesh/triangle_mesh.h"
 #include "worker/run/run_context.h"
 #include "worker/skin/distance_field.h"
+#include "worker/skin/thin_parts.h"
 
 namespace skinframe {
 
@@ -36,7 +37,12 @@ struct Skin {
   double cavity_volume_mm3 = 0.0;                         // of M1, from the fine grid
   double volume_mm3 = 0.0;                                // M minus M1
   Eigen::Vector3d centroid_mm = Eigen::Vector3d::Zero();  // of the skin's volume
+  ThinParts thin;                                         // solid parts of the skin
+
+  // Nothing to hollow: no frame would save kLeastHollowShare of the material.
+  bool is_thin_everywhere() const;
 };
+inline constexpr double kLeastHollowShare = 0.01;  // of the volume of M
 
 // Errors: kInvalidInput when a grid would hold more voxels than memory is granted (the message names the
 // remedy: a larger --voxel or a smaller --size), decided before any is taken; kCancelled.

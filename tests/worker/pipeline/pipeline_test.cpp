@@ -7,8 +7,12 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <set>
 
+#include "tests/worker/pipeline/box_body.h"
 #include "tests/worker/pipeline/small_job.h"
+#include "tests/worker/skin/bodies.h"
+#include "worker/check/check.h"
 
 namespace skinframe {
 namespace {
@@ -35,6 +39,63 @@ TEST(Pipeline, ARefusedPrinterDoesNotSinkTheOthers) {
   EXPECT_FALSE(fs::exists(folder.path() / "out" / "matchbox"));
   EXPECT_TRUE((*outcomes)[1].succeeded()) << (*outcomes)[1].detail;
   EXPECT_TRUE(fs::exists(folder.path() / "out" / "sinterstation-hiq" / "skin-frame.stl"));
+}
+
+TEST(Pipeline, ABodyThinEverywhereComesBackSolidWithAWarning) {
+  test::ScratchFolder folder;
+  JobRequest request = test::sample_job("egg", 60, 60, folder.path());
+  TriangleMesh plate = test::box_mesh();
+  for (auto& v : plate.vertices) v.z() *= 1.6 / 40;
+  ASSERT_TRUE(write_stl(plate, request.mesh_path).ok());
+  request.options.size_mm = std::nullopt;
+  RunContext context;
+  auto outcomes = run_pipeline(request, folder.path() / "out", PipelineObserver{}, context);
+  ASSERT_TRUE(outcomes.ok()) << outcomes.error().message;
+  ASSERT_TRUE(outcomes->front().succeeded()) << outcomes->front().detail;
+  const json report = read_json(folder.path() / "out" / "report.json")["printers"][0];
+  EXPECT_EQ(report["termination"]["reason"], "SOLID");
+  EXPECT_DOUBLE_EQ(report["ratio"], 1.0);
+  EXPECT_DOUBLE_EQ(report["printed_ratio"], 1.0);
+  EXPECT_NEAR(report["printed_volume_mm3"].get<double>(), 20 * 30 * 1.6, 1e-3);
+  EXPECT_DOUBLE_EQ(report["thin"]["fraction"], 1.0);
+  EXPECT_EQ(report["counts"]["geometry"]["struts"], 0);
+  EXPECT_EQ(report["balance"], "holds");
+  ASSERT_EQ(report["warnings"].size(), 1u);
+  EXPECT_NE(report["warnings"][0].get<std::string>().find("solid"), std::string::npos);
+  auto verdicts = check::check_directory(folder.path() / "out", context);
+  ASSERT_TRUE(verdicts.ok()) << verdicts.error().message;
+  EXPECT_TRUE(verdicts->front().holds()) << check::to_text(*verdicts);
+}
+
+TEST(Pipeline, AThinSheetIsToldSolidAndWithoutInternalNodes) {
+  test::ScratchFolder folder;
+  JobRequest request = test::sample_job("egg", 60, 60, folder.path());
+  // A block of 19.2 x 20 x 40 mm with a fin of 1.2 x 20 x 40 mm on its side.
+  const TriangleMesh body =
+      bodies::blocks({16, 8, 8}, {1.2, 5, 5}, [](int x, int y, int) { return y < 4 || x == 8; });
+  ASSERT_TRUE(write_stl(body, request.mesh_path).ok());
+  request.options.size_mm = std::nullopt;
+  request.options.no_optimize = true;
+  request.options.internal_nodes = 20;
+  RunContext context;
+  auto outcomes = run_pipeline(request, folder.path() / "out", PipelineObserver{}, context);
+  ASSERT_TRUE(outcomes.ok()) << outcomes.error().message;
+  ASSERT_TRUE(outcomes->front().succeeded()) << outcomes->front().detail;
+  const json report = read_json(folder.path() / "out" / "report.json")["printers"][0];
+  const double fin = 1.2 * 20 * 40;
+  EXPECT_NEAR(report["thin"]["volume_mm3"].get<double>(), fin, 0.06 * fin);
+  EXPECT_EQ(report["thin"]["regions"][0]["kind"], "sheet");
+  EXPECT_GE(report["skin_volume_mm3"].get<double>(), fin + 2 * (20 + 19.2) * 40);  // four sides, and the fin
+  const json frame = read_json(folder.path() / "out" / "sinterstation-hiq" / "frame.json");
+  std::set<int> on_skin;
+  for (const json& t : frame["skin_triangles"]) on_skin.insert(t.begin(), t.end());
+  std::size_t internal = 0;
+  for (std::size_t i = 0; i < frame["nodes"].size(); ++i) {
+    if (on_skin.contains(static_cast<int>(i))) continue;
+    ++internal;
+    EXPECT_LT(frame["nodes"][i][1].get<double>(), 0.0);  // placed, the fin stands at y > 0
+  }
+  EXPECT_GT(internal, 0u);
 }
 
 TEST(Pipeline, SameInputAndSeedGiveTheSameFrame) {
