@@ -7,10 +7,10 @@ set -euo pipefail
 build=(g++ cmake ninja-build pkg-config libeigen3-dev libcgal-dev libceres-dev libgrpc++-dev libprotobuf-dev
        protobuf-compiler protobuf-compiler-grpc libspdlog-dev libfmt-dev nlohmann-json3-dev libcli11-dev
        libsuitesparse-dev libmetis-dev libopenblas-dev liblapack-dev libopenvdb-dev libtbb-dev libboost-dev
-       libboost-iostreams-dev libblosc-dev zlib1g-dev libsqlite3-dev libssl-dev
+       libboost-iostreams-dev libblosc-dev zlib1g-dev libsqlite3-dev libpqxx-dev libssl-dev
        libminizip-dev libexpat1-dev)
 tests=(libgtest-dev libgmock-dev prusa-slicer openssl coinor-libipopt-dev
-       spin)
+       spin postgresql-15 util-linux)
 
 wanted=("${build[@]}")
 [ "${1:-}" = tests ] && wanted+=("${tests[@]}")

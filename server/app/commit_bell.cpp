@@ -30,8 +30,21 @@ void CommitBell::committed(const JobRecord& record, bool state_changed) {
   hub_.wake(record.job.job_id());
   if (!state_changed) return;
   log_state(record);
-  LeaseDesk* desk = desk_;
-  if (record.job.state() == v1::JOB_STATE_QUEUED && desk != nullptr) desk->job_queued();
+  if (record.job.state() == v1::JOB_STATE_QUEUED) offer();
+}
+
+void CommitBell::offer() {
+  if (LeaseDesk* desk = desk_; desk != nullptr) desk->job_queued();
+}
+
+void CommitBell::changed_elsewhere(const std::string& job_id, bool queued) {
+  hub_.wake(job_id);
+  if (queued) offer();
+}
+
+void CommitBell::missed_news() {
+  hub_.wake_all();
+  offer();
 }
 
 void CommitBell::removed(const std::string& job_id) {

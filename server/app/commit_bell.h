@@ -20,8 +20,12 @@ class CommitBell final : public CommitListener {
 
   void committed(const JobRecord& record, bool state_changed) override;
   void removed(const std::string& job_id) override;
+  void changed_elsewhere(const std::string& job_id, bool queued) override;
+  void missed_news() override;
 
  private:
+  void offer();  // a job may be there for a waiting worker
+
   WatchHub& hub_;
   std::atomic<LeaseDesk*> desk_ = nullptr;
 };

@@ -18,6 +18,9 @@ constexpr char kExamples[] =
     "      for this machine alone, on 127.0.0.1:7350\n"
     "  skinframe-server --data DIR --listen 0.0.0.0:7350 --tls-cert server.crt --tls-key server.key\n"
     "      for the network, encrypted\n"
+    "  skinframe-server --data DIR --store postgresql://skinframe@db/skinframe --artifacts "
+    "/mnt/farm/artifacts\n"
+    "      one of several servers on one database; PGPASSWORD or ~/.pgpass hold its password\n"
     "  skinframe-server --data DIR --listen 127.0.0.1:0 --port-file DIR/port\n"
     "      on a free port, written to the file once it listens\n"
     "\nExit codes: 0 stopped by SIGTERM or SIGINT; 1 cannot run (port taken, folder in use or not writable); "
@@ -37,15 +40,21 @@ std::string text_of(const CLI::App& app, const CLI::Error& error, int& code) {
 
 }  // namespace
 
+bool ServerOptions::store_is_postgres() const {
+  return store.starts_with("postgresql://") || store.starts_with("postgres://");
+}
+
 absl::Status ServerOptions::validate() const {
   if (data.empty())
     return absl::InvalidArgumentError("--data DIR is missing: the folder for jobs and artifacts");
-  if (store.starts_with("postgresql:") || store.starts_with("postgres:")) {
-    return absl::UnimplementedError(
-        "--store postgresql is not built in this version of skinframe; use sqlite");
+  if (store != "sqlite" && !store_is_postgres()) {
+    return absl::InvalidArgumentError(
+        fmt::format("--store \"{}\" is unknown; known: sqlite, postgresql://USER@HOST/DATABASE", store));
   }
-  if (store != "sqlite") {
-    return absl::InvalidArgumentError(fmt::format("--store \"{}\" is unknown; known: sqlite", store));
+  if (store_is_postgres() && artifacts.empty()) {
+    return absl::InvalidArgumentError(
+        "--store postgresql needs --artifacts DIR: a folder that all servers on this database share (one "
+        "server alone may give one of its own)");
   }
   if (tls_cert.empty() != tls_key.empty()) {
     return absl::InvalidArgumentError("--tls-cert and --tls-key must be given together");
@@ -80,7 +89,14 @@ std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* c
   app.add_option("--tls-cert", options.tls_cert, "PEM certificate chain");
   app.add_option("--tls-key", options.tls_key, "PEM private key");
   app.add_flag("--allow-plaintext", options.allow_plaintext, "serve the network without TLS");
-  app.add_option("--store", options.store, "where jobs are kept: sqlite (in --data)")->capture_default_str();
+  app.add_option(
+         "--store", options.store,
+         "where jobs are kept: sqlite (in --data), or postgresql://USER@HOST/DATABASE, which any number "
+         "of servers may share")
+      ->capture_default_str();
+  app.add_option(
+      "--artifacts", options.artifacts,
+      "folder of meshes and results; default DATA/artifacts; shared by all servers of one database");
   app.add_option("--lease-seconds", lease_seconds, "a worker silent for so long loses its job")
       ->capture_default_str();
   app.add_option("--heartbeat-seconds", heartbeat_seconds, "how often workers report")->capture_default_str();

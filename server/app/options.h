@@ -18,10 +18,13 @@ struct ServerOptions {
   std::filesystem::path tls_cert;  // PEM chain; both or none
   std::filesystem::path tls_key;
   bool allow_plaintext = false;
-  std::string store = "sqlite";
+  std::string store = "sqlite";     // or postgresql://...
+  std::filesystem::path artifacts;  // empty: in data
   AttemptPolicy policy;
   std::int64_t queue_limit = 10'000;  // 1 .. 1,000,000 queued jobs
   std::filesystem::path port_file;    // empty: none
+
+  bool store_is_postgres() const;
 
   // One sentence for what does not go together, is out of range, or is not built.
   absl::Status validate() const;

@@ -23,6 +23,8 @@
 #include "server/leases/deadline_watch.h"
 #include "server/leases/duty_runner.h"
 #include "server/leases/lease_reaper.h"
+#include "server/replicas/progress_follower.h"
+#include "server/store/postgres_store.h"
 #include "server/store/sqlite_store.h"
 
 namespace skinframe::server {
@@ -31,6 +33,8 @@ namespace {
 constexpr int kExecutorThreads = 32;  // as many writes as one commit can hold
 constexpr std::size_t kMostWatchers = 10'000;
 constexpr Milliseconds kDutyPause{100};
+constexpr Milliseconds kFollowEvery{500};  // progress that another server wrote is seen so late at most
+constexpr int kDatabaseSessions = 16;
 constexpr std::chrono::seconds kStopPatience{1};  // for calls under way; uploads resume, the rest takes less
 constexpr int kLargestMessageBytes = 4 << 20;
 constexpr const char* kServices[] = {"skinframe.v1.JobService", "skinframe.v1.ArtifactService",
@@ -85,6 +89,7 @@ struct Server::Rooms {
   std::optional<LeaseDesk> desk;
   std::optional<LeaseReaper> reaper;
   std::optional<DeadlineWatch> deadlines;
+  std::optional<ProgressFollower> follower;  // where other servers share the store
   std::optional<DutyRunner> duties;
   std::optional<JobService> jobs;
   std::optional<ArtifactService> files;
@@ -98,10 +103,13 @@ struct Server::Rooms {
 };
 
 absl::Status Server::Rooms::open(const ServerOptions& options, const Clock& clock, IdGenerator& ids) {
-  auto opened_artifacts = ArtifactStore::open(folder.artifacts(), ArtifactLimits{});
+  auto opened_artifacts = ArtifactStore::open(
+      options.artifacts.empty() ? folder.artifacts() : options.artifacts, ArtifactLimits{});
   if (!opened_artifacts.ok()) return opened_artifacts.status();
   artifacts = *std::move(opened_artifacts);
-  auto opened_store = open_sqlite_store(folder.store_file(), &bell);
+  auto opened_store = options.store_is_postgres()
+                          ? open_postgres_store({options.store, kDatabaseSessions}, &bell)
+                          : open_sqlite_store(folder.store_file(), &bell);
   if (!opened_store.ok()) return opened_store.status();
   store = *std::move(opened_store);
 
@@ -116,7 +124,9 @@ absl::Status Server::Rooms::open(const ServerOptions& options, const Clock& cloc
   files.emplace(parts);
   profiles.emplace(catalog);
   workers.emplace(parts);
-  duties.emplace(clock, std::vector<Duty*>{&*reaper, &*deadlines, &*desk}, kDutyPause);
+  std::vector<Duty*> all{&*reaper, &*deadlines, &*desk};
+  if (options.store_is_postgres()) all.push_back(&follower.emplace(*store, hub, kFollowEvery));
+  duties.emplace(clock, all, kDutyPause);
   return absl::OkStatus();
 }
 

@@ -5,7 +5,8 @@
 //   DIR/partial/abcdef...       an upload under way or interrupted; continued from its end
 //
 // Guarantees: a name under complete/ appears only by a rename after its content was hashed and synced, so
-// what is there after a power cut is whole. One upload of a content at a time. A partial file that a power
+// what is there after a power cut is whole. One upload of a content at a time, also among servers that share
+// the folder (by a lock on the partial file: the file system must have working locks). A partial file that a power
 // cut damaged costs a repetition (its hash is wrong, nothing is kept), never a wrong artifact.
 #pragma once
 

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -55,6 +56,20 @@ absl::StatusOr<std::int64_t> File::size() const {
   struct stat facts {};
   if (::fstat(descriptor_, &facts) != 0) return errno_status(errno, path_, "look at");
   return static_cast<std::int64_t>(facts.st_size);
+}
+
+absl::Status File::lock() {
+  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EWOULDBLOCK)
+      return absl::AbortedError(fmt::format("another server writes {}", path_.filename().string()));
+    return errno_status(errno, path_, "lock");
+  }
+  struct stat ours {};
+  struct stat named {};
+  if (::fstat(descriptor_, &ours) != 0) return errno_status(errno, path_, "look at");
+  if (::stat(path_.c_str(), &named) != 0 || named.st_ino != ours.st_ino || named.st_dev != ours.st_dev)
+    return absl::AbortedError(fmt::format("another server has finished {}", path_.filename().string()));
+  return absl::OkStatus();
 }
 
 absl::Status File::truncate(std::int64_t size) {

@@ -28,6 +28,9 @@ class File {
       const std::filesystem::path& file);  // made when absent, kept when there
 
   absl::StatusOr<std::int64_t> size() const;
+  // For this descriptor alone among all processes, until it is closed. ABORTED: another one has it, or the name
+  // has meanwhile become another file's.
+  absl::Status lock();
   absl::Status truncate(std::int64_t size);
   absl::Status write_at(std::int64_t offset, std::string_view bytes);  // all of them
   // Up to size bytes; fewer only at the end of the file.

@@ -36,6 +36,9 @@ absl::Status Upload::start(std::int64_t offset) {
   auto file = File::open_to_write(store_.partial_path(sha256_));
   if (!file.ok()) return file.status();
   file_ = *std::move(file);
+  // Other servers may share the folder: nobody else may write here, nor turn what we write into a finished
+  // file.
+  if (absl::Status status = file_.lock(); !status.ok()) return status;
   const auto kept = file_.size();
   if (!kept.ok()) return kept.status();
   if (offset == 0) return file_.truncate(0);

@@ -43,6 +43,10 @@ void WatchHub::wake(const std::string& job_id) {
   for (const auto& watcher : watchers) watcher->wake();
 }
 
+void WatchHub::wake_all() {
+  for (const std::string& job_id : watched_jobs()) wake(job_id);
+}
+
 void WatchHub::close() {
   std::unordered_map<std::string, std::vector<std::shared_ptr<Watcher>>> all;
   {
@@ -53,6 +57,14 @@ void WatchHub::close() {
   for (const auto& [job_id, watchers] : all) {
     for (const auto& watcher : watchers) watcher->server_stops();
   }
+}
+
+std::vector<std::string> WatchHub::watched_jobs() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> jobs;
+  jobs.reserve(by_job_.size());
+  for (const auto& [job_id, watchers] : by_job_) jobs.push_back(job_id);
+  return jobs;
 }
 
 std::size_t WatchHub::watchers() const {

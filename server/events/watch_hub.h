@@ -35,9 +35,11 @@ class WatchHub {
   void unsubscribe(const std::string& job_id, const Watcher* watcher);  // no harm when not subscribed
 
   void wake(const std::string& job_id);
+  void wake_all();
   void close();  // tells all that the server stops; nobody subscribes any more
 
   std::size_t watchers() const;
+  std::vector<std::string> watched_jobs() const;
 
  private:
   const std::size_t most_watchers_;

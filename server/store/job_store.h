@@ -30,6 +30,12 @@ class CommitListener {
   virtual ~CommitListener() = default;
   virtual void committed(const JobRecord& record, bool state_changed) = 0;
   virtual void removed(const std::string& job_id) = 0;
+
+  // What another server on the same store did, where several share it: a change of state or a removal. What
+  // is no change of state is not told (see JobStore::last_sequences).
+  virtual void changed_elsewhere(const std::string& /*job_id*/, bool /*queued*/) {}
+  // Anything may have changed elsewhere: news were lost while the store was out of reach.
+  virtual void missed_news() {}
 };
 
 struct Created {
@@ -91,6 +97,10 @@ class JobStore {
   // first.
   virtual absl::StatusOr<std::vector<std::string>> expired_leases(Time now, int limit) = 0;
   virtual absl::StatusOr<std::vector<std::string>> passed_deadlines(Time now, int limit) = 0;
+
+  // The sequence number of the newest event of each of these jobs; unknown ones are left out.
+  virtual absl::StatusOr<std::map<std::string, std::int64_t>> last_sequences(
+      const std::vector<std::string>& job_ids) = 0;
 };
 
 }  // namespace skinframe::server

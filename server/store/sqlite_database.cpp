@@ -108,9 +108,6 @@ absl::Status SqliteDatabase::execute(const std::string& sql) {
   return code == SQLITE_OK ? absl::OkStatus() : error(code, sql);
 }
 
-std::int64_t SqliteDatabase::changes() const { return sqlite3_changes64(handle_); }
-std::int64_t SqliteDatabase::last_row_id() const { return sqlite3_last_insert_rowid(handle_); }
-
 absl::Status SqliteDatabase::error(int code, std::string_view what) const {
   const std::string message =
       fmt::format("store: {}: {}", handle_ != nullptr ? sqlite3_errmsg(handle_) : sqlite3_errstr(code), what);

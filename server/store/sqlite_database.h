@@ -54,6 +54,12 @@ class SqliteStatement {
 
 class SqliteDatabase {
  public:
+  using Statement = SqliteStatement;
+  // One connection writes, so that nothing needs to be locked row by row.
+  static constexpr char kForUpdate[] = "";
+  static constexpr char kSkipLocked[] = "";
+  static constexpr char kBeginMigration[] = "BEGIN IMMEDIATE";
+
   enum class Mode { kReadWrite, kReadOnly };
 
   // Write-ahead log, synchronous=FULL: a commit that returned is on the disk.
@@ -63,8 +69,6 @@ class SqliteDatabase {
   SqliteDatabase& operator=(const SqliteDatabase&) = delete;
 
   absl::Status execute(const std::string& sql);  // one or more statements without parameters or rows
-  std::int64_t changes() const;                  // rows touched by the last statement
-  std::int64_t last_row_id() const;
 
  private:
   friend class SqliteStatement;

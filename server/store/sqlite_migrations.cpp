@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/store/sqlite_migrations.h"
 
-#include <fmt/format.h>
-
 #include <array>
-#include <chrono>
 
 namespace skinframe::server {
 namespace {
@@ -64,51 +61,8 @@ INSERT INTO counters (name, value) VALUES ('fencing_token', 0);
 
 constexpr std::array kMigrations = {Migration{1, "jobs and events", kJobsAndEvents}};
 
-absl::Status apply(SqliteDatabase& database, const Migration& step) {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  absl::Status status = database.execute("BEGIN IMMEDIATE");
-  if (!status.ok()) return status;
-  status = database.execute(step.sql);
-  if (status.ok()) {
-    SqliteStatement record(database,
-                           "INSERT INTO schema_version (version, name, applied_ms) VALUES (?, ?, ?)");
-    status = record.bind(step.version)
-                 .bind_text(step.name)
-                 .bind(std::chrono::duration_cast<std::chrono::milliseconds>(now).count())
-                 .run();
-  }
-  if (status.ok()) status = database.execute("COMMIT");
-  if (status.ok()) return status;
-  database.execute("ROLLBACK").IgnoreError();  // the first error is the one to tell
-  return absl::Status(status.code(), fmt::format("migration {} ({}): {}", step.version, step.name,
-                                                 std::string(status.message())));
-}
-
 }  // namespace
 
 std::span<const Migration> sqlite_migrations() { return kMigrations; }
-
-absl::Status migrate(SqliteDatabase& database, std::span<const Migration> steps) {
-  absl::Status status = database.execute(
-      "CREATE TABLE IF NOT EXISTS schema_version "
-      "(version INTEGER PRIMARY KEY, name TEXT NOT NULL, applied_ms INTEGER NOT NULL) STRICT");
-  if (!status.ok()) return status;
-  std::int64_t version = 0;
-  {
-    SqliteStatement newest(database, "SELECT coalesce(max(version), 0) FROM schema_version");
-    if (newest.step()) version = newest.integer(0);
-    if (!newest.status().ok()) return newest.status();
-  }
-  const std::int64_t known = steps.empty() ? 0 : steps.back().version;
-  if (version > known) {
-    return absl::FailedPreconditionError(fmt::format(
-        "the store has schema version {}, this server knows up to {}: use the newer server", version, known));
-  }
-  for (const Migration& step : steps) {
-    if (step.version <= version) continue;
-    if (status = apply(database, step); !status.ok()) return status;
-  }
-  return absl::OkStatus();
-}
 
 }  // namespace skinframe::server

@@ -52,7 +52,8 @@ TEST(Options, TheNetworkNeedsTlsOrAnExplicitFlag) {
 
 TEST(Options, WhatIsWrongIsNamed) {
   expect_refused({}, "--data");
-  expect_refused({"--data", "d", "--store", "postgresql://farm"}, "postgresql");
+  expect_refused({"--data", "d", "--store", "mysql://farm"}, "--store");
+  expect_refused({"--data", "d", "--store", "postgresql://farm"}, "--artifacts");
   expect_refused({"--data", "d", "--store", "oracle"}, "oracle");
   expect_refused({"--data", "d", "--tls-cert", "c"}, "--tls-key");
   expect_refused({"--data", "d", "--listen", "7350"}, "--listen");

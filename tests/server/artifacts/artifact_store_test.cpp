@@ -55,6 +55,24 @@ TEST_F(Artifacts, AnUnknownOneIsNotCompleteAndResumesAtZero) {
   EXPECT_TRUE(absl::IsNotFound(store_->read(std::string(64, '0')).status()));
 }
 
+TEST_F(Artifacts, ServersThatShareAFolderWriteAContentOneAtATime) {
+  const auto other =
+      *ArtifactStore::open(folder_.path(), {.largest_bytes = 1000, .largest_chunk_bytes = 100});
+  const std::string name = sha256_hex("mesh");
+  {
+    const auto ours = store_->upload(name, 4, 0);
+    ASSERT_TRUE(ours.ok());
+    ASSERT_TRUE((*ours)->append("me").ok());
+    EXPECT_TRUE(absl::IsAborted(other->upload(name, 4, 0).status()));
+    ASSERT_TRUE((*ours)->append("sh").ok());
+    ASSERT_TRUE((*ours)->finish().ok());
+  }
+  const auto theirs = other->upload(name, 4, 0);
+  ASSERT_TRUE(theirs.ok());
+  EXPECT_EQ(*theirs, nullptr);  // it is there
+  EXPECT_EQ(content_of(name), "mesh");
+}
+
 TEST_F(Artifacts, NamesThatAreNoSha256NeverReachTheDisk) {
   for (const char* name :
        {"", "abc", "../../../../../../../../../../../../../../../../../../../../etc/passwd",

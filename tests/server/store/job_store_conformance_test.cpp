@@ -305,6 +305,21 @@ TEST_P(JobStoreConformance, FindsExpiredLeasesAndPassedDeadlinesOldestFirst) {
   EXPECT_EQ(*store_->expired_leases(kNoon + kPolicy.lease, 10), (std::vector<std::string>{"b"}));
 }
 
+TEST_P(JobStoreConformance, TellsTheNewestSequenceOfManyJobsAtOnce) {
+  std::vector<std::string> ids = {"none"};
+  for (int i = 0; i < 3; ++i) {
+    ids.push_back("job-" + std::to_string(i));
+    create(ids.back());
+  }
+  for (int i = 0; i < 600; ++i)
+    ids.push_back("unknown-" + std::to_string(i));  // more than one statement holds
+  ASSERT_TRUE(lease());
+  const auto last = store_->last_sequences(ids);
+  ASSERT_TRUE(last.ok()) << last.status();
+  EXPECT_EQ(*last, (std::map<std::string, std::int64_t>{{"job-0", 2}, {"job-1", 1}, {"job-2", 1}}));
+  EXPECT_TRUE(store_->last_sequences({})->empty());
+}
+
 TEST_P(JobStoreConformance, TheListenerHearsOfEachCommitBeforeTheWriteReturnsAndOfNoRefusal) {
   struct Ear : CommitListener {
     std::vector<std::string> heard;

@@ -10,22 +10,10 @@
 #include "server/store/sqlite_migrations.h"
 #include "server/store/sqlite_writer.h"
 #include "tests/server/fixture/example_job.h"
-#include "tests/server/store/store_factory.h"
+#include "tests/server/fixture/temporary_folder.h"
 
 namespace skinframe::server {
 namespace {
-
-class SqlitePlace final : public StorePlace {
- public:
-  std::unique_ptr<JobStore> open(CommitListener* listener) override {
-    auto store = open_sqlite_store(folder_.path() / "jobs.sqlite", listener);
-    EXPECT_TRUE(store.ok()) << store.status();
-    return store.ok() ? *std::move(store) : nullptr;
-  }
-
- private:
-  TemporaryFolder folder_;
-};
 
 std::unique_ptr<SqliteDatabase> open_database(const std::filesystem::path& file) {
   auto database = SqliteDatabase::open(file, SqliteDatabase::Mode::kReadWrite);
@@ -122,9 +110,4 @@ TEST(SqliteWriter, WhatWaitsTogetherIsCommittedTogetherAndAFailingPartHarmsNobod
 }
 
 }  // namespace
-
-std::vector<StoreKind> store_kinds() {
-  return {{"Sqlite", [] { return std::make_unique<SqlitePlace>(); }}};
-}
-
 }  // namespace skinframe::server

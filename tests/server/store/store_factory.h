@@ -4,10 +4,12 @@
 
 #include <functional>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
 #include "server/store/job_store.h"
+#include "tests/server/fixture/postgres_server.h"
 #include "tests/server/fixture/temporary_folder.h"
 
 namespace skinframe::server {
@@ -24,6 +26,11 @@ struct StoreKind {
   std::function<std::unique_ptr<StorePlace>()> make_place;
 };
 
+inline void PrintTo(const StoreKind& kind, std::ostream* out) { *out << kind.name; }
+
 std::vector<StoreKind> store_kinds();
+
+// One for all tests of a program.
+PostgresServer& shared_postgres();
 
 }  // namespace skinframe::server

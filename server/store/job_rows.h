@@ -1,17 +1,46 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/store/sqlite_rows.h"
+// Job records and events as rows, the same for every SQL store. Each function is one or two statements within
+// the caller's transaction.
+//
+// Database is SqliteDatabase or PostgresSession. Either has
+//   Statement                 bind(), bind_text(), bind_blob(), bind_null() in the order of the ?;
+//                             step(), run(), status(); integer(), bytes(), is_null() of a column
+//   kForUpdate, kSkipLocked   what a SELECT ends with to lock its rows, where the store locks rows
+#pragma once
 
 #include <fmt/format.h>
 
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/jobs/job_record.h"
 #include "skinframe/v1/worker.pb.h"
 
 namespace skinframe::server {
-namespace {
 
-std::int64_t to_ms(Time time) { return time.time_since_epoch().count(); }
-Time from_ms(std::int64_t ms) { return Time(Milliseconds(ms)); }
+struct JobRow {
+  std::int64_t ordinal = 0;
+  JobRecord record;
+};
 
-std::string profiles_blob(const JobRecord& record) {
+// The columns that read_row() expects, in its order.
+inline constexpr char kJobColumns[] =
+    "ordinal, job_id, request_id, spec_digest, spec, profiles, create_ms, deadline_ms, state, reason, "
+    "detail, results, start_ms, end_ms, attempt, lost_attempts, not_before_ms, cancel_requested, "
+    "last_sequence, fencing_token, worker_id, instance_id, lease_expires_ms, completion_digest";
+
+inline absl::Status job_not_found(const std::string& job_id) {
+  return absl::NotFoundError(fmt::format("no job \"{}\"", job_id));
+}
+
+inline std::int64_t to_ms(Time time) { return time.time_since_epoch().count(); }
+inline Time from_ms(std::int64_t ms) { return Time(Milliseconds(ms)); }
+
+inline std::string profiles_blob(const JobRecord& record) {
   v1::Assignment profiles;
   for (const auto& printer : record.printers) *profiles.add_printers() = printer;
   for (const auto& material : record.materials) *profiles.add_materials() = material;
@@ -19,7 +48,7 @@ std::string profiles_blob(const JobRecord& record) {
   return profiles.SerializeAsString();
 }
 
-std::string results_blob(const JobRecord& record) {
+inline std::string results_blob(const JobRecord& record) {
   v1::Job results;
   *results.mutable_printers() = record.job.printers();
   *results.mutable_files() = record.job.files();
@@ -28,17 +57,17 @@ std::string results_blob(const JobRecord& record) {
 }
 
 // The columns that change after submission, in the order in which both INSERT and UPDATE name them.
-constexpr char kMutableInsert[] =
+inline constexpr char kMutableInsert[] =
     "state, reason, detail, results, start_ms, end_ms, attempt, lost_attempts, not_before_ms, "
-    "cancel_requested, "
-    "last_sequence, fencing_token, worker_id, instance_id, lease_expires_ms, completion_digest";
-constexpr char kMutableUpdate[] =
-    "state = ?, reason = ?, detail = ?, results = ?, start_ms = ?, end_ms = ?, attempt = ?, lost_attempts = "
-    "?, "
-    "not_before_ms = ?, cancel_requested = ?, last_sequence = ?, fencing_token = ?, worker_id = ?, "
-    "instance_id = ?, lease_expires_ms = ?, completion_digest = ?";
+    "cancel_requested, last_sequence, fencing_token, worker_id, instance_id, lease_expires_ms, "
+    "completion_digest";
+inline constexpr char kMutableUpdate[] =
+    "state = ?, reason = ?, detail = ?, results = ?, start_ms = ?, end_ms = ?, attempt = ?, "
+    "lost_attempts = ?, not_before_ms = ?, cancel_requested = ?, last_sequence = ?, fencing_token = ?, "
+    "worker_id = ?, instance_id = ?, lease_expires_ms = ?, completion_digest = ?";
 
-void bind_time(SqliteStatement& statement, bool present, const google::protobuf::Timestamp& time) {
+template <class Statement>
+void bind_time(Statement& statement, bool present, const google::protobuf::Timestamp& time) {
   if (present) {
     statement.bind(to_ms(from_timestamp(time)));
   } else {
@@ -46,7 +75,8 @@ void bind_time(SqliteStatement& statement, bool present, const google::protobuf:
   }
 }
 
-void bind_mutable(SqliteStatement& statement, const JobRecord& record) {
+template <class Statement>
+void bind_mutable(Statement& statement, const JobRecord& record) {
   const v1::Job& job = record.job;
   statement.bind(job.state()).bind(job.reason()).bind_text(job.detail()).bind_blob(results_blob(record));
   bind_time(statement, job.has_start_time(), job.start_time());
@@ -57,24 +87,20 @@ void bind_mutable(SqliteStatement& statement, const JobRecord& record) {
   statement.bind(to_ms(record.lease.expires)).bind_text(record.completion_digest);
 }
 
-absl::Status insert_labels(SqliteDatabase& database, std::int64_t ordinal, const v1::JobSpec& spec) {
+template <class Database>
+absl::Status insert_labels(Database& database, std::int64_t ordinal, const v1::JobSpec& spec) {
   for (const auto& [key, value] : spec.labels()) {
-    SqliteStatement insert(database, "INSERT INTO labels (ordinal, key, value) VALUES (?, ?, ?)");
+    typename Database::Statement insert(database,
+                                        "INSERT INTO labels (ordinal, key, value) VALUES (?, ?, ?)");
     if (absl::Status status = insert.bind(ordinal).bind_text(key).bind_text(value).run(); !status.ok())
       return status;
   }
   return absl::OkStatus();
 }
 
-}  // namespace
-
-const char* const kJobColumns =
-    "ordinal, job_id, request_id, spec_digest, spec, profiles, create_ms, deadline_ms, state, reason, "
-    "detail, "
-    "results, start_ms, end_ms, attempt, lost_attempts, not_before_ms, cancel_requested, last_sequence, "
-    "fencing_token, worker_id, instance_id, lease_expires_ms, completion_digest";
-
-absl::StatusOr<JobRow> read_row(const SqliteStatement& row) {
+// The row under the statement's cursor. INTERNAL: a blob that does not parse.
+template <class Statement>
+absl::StatusOr<JobRow> read_row(const Statement& row) {
   JobRow result;
   JobRecord& record = result.record;
   v1::Job& job = record.job;
@@ -94,7 +120,7 @@ absl::StatusOr<JobRow> read_row(const SqliteStatement& row) {
   job.set_detail(row.bytes(column++));
   if (!job.MergeFromString(row.bytes(column++)) || !job.mutable_spec()->ParseFromString(spec) ||
       !profiles.ParseFromString(profile_bytes)) {
-    return absl::InternalError(fmt::format("store: job {} does not parse: the file is damaged", job_id));
+    return absl::InternalError(fmt::format("store: job {} does not parse: the store is damaged", job_id));
   }
   job.set_job_id(job_id);
   record.printers.assign(profiles.printers().begin(), profiles.printers().end());
@@ -117,21 +143,25 @@ absl::StatusOr<JobRow> read_row(const SqliteStatement& row) {
   return result;
 }
 
-absl::StatusOr<JobRow> find_job(SqliteDatabase& database, const std::string& job_id) {
-  static const std::string kSql = fmt::format("SELECT {} FROM jobs WHERE job_id = ?", kJobColumns);
-  SqliteStatement select(database, kSql);
+// NOT_FOUND. locking: "" or Database::kForUpdate.
+template <class Database>
+absl::StatusOr<JobRow> find_job(Database& database, const std::string& job_id, const char* locking = "") {
+  typename Database::Statement select(
+      database, fmt::format("SELECT {} FROM jobs WHERE job_id = ?{}", kJobColumns, locking));
   if (select.bind_text(job_id).step()) return read_row(select);
   return select.status().ok() ? job_not_found(job_id) : select.status();
 }
 
-absl::StatusOr<std::int64_t> insert_job(SqliteDatabase& database, const JobRecord& record) {
+// Inserts the record with its labels. Its ordinal; nothing when a job with its request id is there already.
+template <class Database>
+absl::StatusOr<std::optional<std::int64_t>> insert_job(Database& database, const JobRecord& record) {
   static const std::string kSql = fmt::format(
-      "INSERT INTO jobs (job_id, request_id, spec_digest, spec, profiles, priority, create_ms, deadline_ms, "
-      "{}) "
-      "VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+      "INSERT INTO jobs (job_id, request_id, spec_digest, spec, profiles, priority, create_ms, "
+      "deadline_ms, {}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) "
+      "ON CONFLICT (request_id) DO NOTHING RETURNING ordinal",
       kMutableInsert);
   const v1::Job& job = record.job;
-  SqliteStatement insert(database, kSql);
+  typename Database::Statement insert(database, kSql);
   insert.bind_text(job.job_id());
   if (record.request_id.empty()) {
     insert.bind_null();
@@ -149,26 +179,35 @@ absl::StatusOr<std::int64_t> insert_job(SqliteDatabase& database, const JobRecor
     insert.bind_null();
   }
   bind_mutable(insert, record);
+  if (!insert.step()) {
+    if (!insert.status().ok()) return insert.status();
+    return std::optional<std::int64_t>();
+  }
+  const std::int64_t ordinal = insert.integer(0);
   if (absl::Status status = insert.run(); !status.ok()) return status;
-  const std::int64_t ordinal = database.last_row_id();
   if (absl::Status status = insert_labels(database, ordinal, job.spec()); !status.ok()) return status;
-  return ordinal;
+  return std::optional(ordinal);
 }
 
-absl::Status update_job(SqliteDatabase& database, std::int64_t ordinal, const JobRecord& record) {
+// Writes what may change after submission.
+template <class Database>
+absl::Status update_job(Database& database, std::int64_t ordinal, const JobRecord& record) {
   static const std::string kSql = fmt::format("UPDATE jobs SET {} WHERE ordinal = ?", kMutableUpdate);
-  SqliteStatement update(database, kSql);
+  typename Database::Statement update(database, kSql);
   bind_mutable(update, record);
   return update.bind(ordinal).run();
 }
 
-absl::Status append_events(SqliteDatabase& database, std::int64_t ordinal, JobRecord& record,
+// Numbers the events after record.job.last_sequence, appends them, and raises last_sequence.
+template <class Database>
+absl::Status append_events(Database& database, std::int64_t ordinal, JobRecord& record,
                            std::vector<v1::JobEvent> events) {
   for (v1::JobEvent& event : events) {
     const std::int64_t sequence = record.job.last_sequence() + 1;
     event.set_job_id(record.job.job_id());
     event.set_sequence(sequence);
-    SqliteStatement insert(database, "INSERT INTO events (ordinal, sequence, body) VALUES (?, ?, ?)");
+    typename Database::Statement insert(database,
+                                        "INSERT INTO events (ordinal, sequence, body) VALUES (?, ?, ?)");
     absl::Status status = insert.bind(ordinal).bind(sequence).bind_blob(event.SerializeAsString()).run();
     if (!status.ok()) return status;
     record.job.set_last_sequence(sequence);
@@ -176,8 +215,12 @@ absl::Status append_events(SqliteDatabase& database, std::int64_t ordinal, JobRe
   return absl::OkStatus();
 }
 
-absl::Status job_not_found(const std::string& job_id) {
-  return absl::NotFoundError(fmt::format("no job \"{}\"", job_id));
+// Events first: they raise last_sequence, which the row then holds.
+template <class Database>
+absl::Status write_change(Database& database, std::int64_t ordinal, JobRecord& record,
+                          std::vector<v1::JobEvent> events) {
+  absl::Status status = append_events(database, ordinal, record, std::move(events));
+  return status.ok() ? update_job(database, ordinal, record) : status;
 }
 
 }  // namespace skinframe::server

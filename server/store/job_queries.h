@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// The statements behind each call of JobStore, the same for every SQL store; see job_rows.h for Database.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "server/store/job_rows.h"
+#include "server/store/job_store.h"
+
+namespace skinframe::server {
+
+// The job that a request id made before. ALREADY_EXISTS: with another spec.
+template <class Database>
+absl::StatusOr<std::optional<JobRecord>> find_request(Database& database, const JobRecord& asked) {
+  if (asked.request_id.empty()) return std::optional<JobRecord>();
+  typename Database::Statement same(database,
+                                    fmt::format("SELECT {} FROM jobs WHERE request_id = ?", kJobColumns));
+  if (!same.bind_text(asked.request_id).step()) {
+    if (!same.status().ok()) return same.status();
+    return std::optional<JobRecord>();
+  }
+  auto row = read_row(same);
+  if (!row.ok()) return row.status();
+  if (row->record.spec_digest != asked.spec_digest) {
+    return absl::AlreadyExistsError(fmt::format("request_id \"{}\" was used with another spec, for job {}",
+                                                asked.request_id, row->record.job.job_id()));
+  }
+  return std::optional<JobRecord>(std::move(row->record));
+}
+
+// RESOURCE_EXHAUSTED: queue_limit jobs are queued.
+template <class Database>
+absl::Status permit_one_more(Database& database, std::int64_t queue_limit) {
+  // Counts no further than the limit.
+  typename Database::Statement queued(
+      database, "SELECT count(*) FROM (SELECT 1 FROM jobs WHERE state = 1 LIMIT ?) AS queued");
+  if (!queued.bind(queue_limit).step()) return queued.status();
+  if (queued.integer(0) < queue_limit) return absl::OkStatus();
+  return absl::ResourceExhaustedError(fmt::format("the queue is full: {} jobs wait", queued.integer(0)));
+}
+
+template <class Database>
+absl::StatusOr<Created> create_job(Database& database, const Change& job, std::int64_t queue_limit) {
+  for (;;) {
+    auto same = find_request(database, job.record);
+    if (!same.ok()) return same.status();
+    if (same->has_value()) return Created{std::move(**same), true};
+    if (absl::Status status = permit_one_more(database, queue_limit); !status.ok()) return status;
+    Created created{job.record, false};
+    const auto ordinal = insert_job(database, created.record);
+    if (!ordinal.ok()) return ordinal.status();
+    if (!ordinal->has_value()) continue;  // somebody came between the look and the insert
+    if (absl::Status status = write_change(database, **ordinal, created.record, job.events); !status.ok())
+      return status;
+    return created;
+  }
+}
+
+// The first job that may run now, locked where the store locks rows. Nothing: there is none, or others hold
+// those that there are.
+template <class Database>
+absl::StatusOr<std::optional<JobRow>> first_queued(Database& database, Time now) {
+  typename Database::Statement first(database,
+                                     fmt::format("SELECT {} FROM jobs WHERE state = 1 AND not_before_ms <= ? "
+                                                 "ORDER BY priority DESC, ordinal LIMIT 1{}",
+                                                 kJobColumns, Database::kSkipLocked));
+  if (first.bind(to_ms(now)).step()) {
+    auto row = read_row(first);
+    if (!row.ok()) return row.status();
+    return std::optional<JobRow>(*std::move(row));
+  }
+  if (!first.status().ok()) return first.status();
+  return std::optional<JobRow>();
+}
+
+template <class Database>
+absl::StatusOr<ListPage> list_jobs(Database& database, const ListQuery& query) {
+  std::string sql = fmt::format("SELECT {} FROM jobs WHERE true", kJobColumns);
+  if (query.before_ordinal > 0) sql += " AND ordinal < ?";
+  for (std::size_t i = 0; i < query.states.size(); ++i) sql += i == 0 ? " AND state IN (?" : ", ?";
+  if (!query.states.empty()) sql += ")";
+  for (std::size_t i = 0; i < query.labels.size(); ++i) {
+    sql += " AND EXISTS (SELECT 1 FROM labels WHERE labels.ordinal = jobs.ordinal AND key = ? AND value = ?)";
+  }
+  sql += " ORDER BY ordinal DESC LIMIT ?";
+
+  typename Database::Statement select(database, sql);
+  if (query.before_ordinal > 0) select.bind(query.before_ordinal);
+  for (const v1::JobState state : query.states) select.bind(state);
+  for (const auto& [key, value] : query.labels) select.bind_text(key).bind_text(value);
+  select.bind(query.limit + 1);  // one more tells whether there is a further page
+  ListPage page;
+  while (select.step()) {
+    if (static_cast<int>(page.entries.size()) == query.limit) {
+      page.more = true;
+      break;
+    }
+    auto row = read_row(select);
+    if (!row.ok()) return row.status();
+    page.entries.push_back({std::move(row->record.job), row->ordinal});
+  }
+  if (!select.status().ok()) return select.status();
+  return page;
+}
+
+template <class Database>
+absl::StatusOr<std::vector<v1::JobEvent>> read_events(Database& database, const std::string& job_id,
+                                                      std::int64_t after_sequence, int limit) {
+  // The job itself comes along as a row without a body, so that an unknown job is told from one without news.
+  typename Database::Statement select(
+      database,
+      "SELECT body FROM jobs LEFT JOIN events ON events.ordinal = jobs.ordinal AND sequence > ? "
+      "WHERE job_id = ? ORDER BY sequence LIMIT ?");
+  select.bind(after_sequence).bind_text(job_id).bind(limit);
+  std::vector<v1::JobEvent> events;
+  bool job_there = false;
+  while (select.step()) {
+    job_there = true;
+    if (select.is_null(0)) break;
+    if (!events.emplace_back().ParseFromString(select.bytes(0))) {
+      return absl::InternalError(fmt::format("store: an event of job {} does not parse: damaged", job_id));
+    }
+  }
+  if (!select.status().ok()) return select.status();
+  if (!job_there) return job_not_found(job_id);
+  return events;
+}
+
+template <class Database>
+absl::StatusOr<std::int64_t> count_queued_before(Database& database, const std::string& job_id) {
+  typename Database::Statement count(
+      database,
+      "SELECT (SELECT count(*) FROM jobs WHERE state = 1 AND (priority > own.priority OR "
+      "(priority = own.priority AND ordinal < own.ordinal))) FROM jobs own WHERE job_id = ?");
+  if (count.bind_text(job_id).step()) return count.integer(0);
+  return count.status().ok() ? job_not_found(job_id) : count.status();
+}
+
+inline constexpr char kExpiredLeases[] =
+    "SELECT job_id FROM jobs WHERE state = 2 AND lease_expires_ms <= ? ORDER BY lease_expires_ms LIMIT ?";
+inline constexpr char kPassedDeadlines[] =
+    "SELECT job_id FROM jobs WHERE state = 1 AND deadline_ms <= ? ORDER BY deadline_ms LIMIT ?";
+
+// The ids that one of the two statements above finds.
+template <class Database>
+absl::StatusOr<std::vector<std::string>> overdue_jobs(Database& database, const char* sql, Time now,
+                                                      int limit) {
+  typename Database::Statement select(database, sql);
+  select.bind(to_ms(now)).bind(limit);
+  std::vector<std::string> found;
+  while (select.step()) found.push_back(select.bytes(0));
+  if (!select.status().ok()) return select.status();
+  return found;
+}
+
+template <class Database>
+absl::StatusOr<std::map<std::string, std::int64_t>> read_last_sequences(
+    Database& database, const std::vector<std::string>& job_ids) {
+  constexpr std::size_t kAtOnce = 500;  // parameters of one statement are bounded
+  std::map<std::string, std::int64_t> last;
+  for (std::size_t begin = 0; begin < job_ids.size(); begin += kAtOnce) {
+    const std::size_t end = std::min(job_ids.size(), begin + kAtOnce);
+    std::string sql = "SELECT job_id, last_sequence FROM jobs WHERE job_id IN (?";
+    for (std::size_t i = begin + 1; i < end; ++i) sql += ", ?";
+    typename Database::Statement select(database, sql + ")");
+    for (std::size_t i = begin; i < end; ++i) select.bind_text(job_ids[i]);
+    while (select.step()) last[select.bytes(0)] = select.integer(1);
+    if (!select.status().ok()) return select.status();
+  }
+  return last;
+}
+
+}  // namespace skinframe::server

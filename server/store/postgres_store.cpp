@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/store/postgres_store.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <random>
+#include <utility>
+
+#include "server/store/job_queries.h"
+#include "server/store/postgres_migrations.h"
+#include "server/store/postgres_news.h"
+#include "server/store/postgres_pool.h"
+
+namespace skinframe::server {
+namespace {
+
+// A row that was taken while a lease looked at it counts as seen, and the lease finds nothing: then it looks
+// again.
+constexpr int kLeaseTries = 4;
+
+std::string sender_name() {
+  std::random_device random;
+  return fmt::format("{:08x}{:08x}", random(), random());
+}
+
+class PostgresStore final : public JobStore {
+ public:
+  PostgresStore(const PostgresOptions& options, CommitListener* listener)
+      : pool_(options.where, options.most_sessions), listener_(listener), own_(sender_name()) {
+    if (listener_ != nullptr) news_.emplace(options.where, own_, *listener_);
+  }
+
+  absl::StatusOr<Created> create(const Change& job, std::int64_t queue_limit) override {
+    Created created;
+    const absl::Status status = pool_.transact([&](PostgresSession& session) -> absl::Status {
+      auto made = create_job(session, job, queue_limit);
+      if (!made.ok()) return made.status();
+      created = *std::move(made);
+      return created.existed ? absl::OkStatus() : tell_others(session, created.record);
+    });
+    if (!status.ok()) return status;
+    if (!created.existed) committed(created.record, true);
+    return created;
+  }
+
+  absl::StatusOr<JobRecord> modify(const std::string& job_id, const Decide& decide) override {
+    JobRecord after;
+    bool changed = false;
+    bool state_changed = false;
+    const absl::Status status = pool_.transact([&](PostgresSession& session) -> absl::Status {
+      auto row = find_job(session, job_id, PostgresSession::kForUpdate);
+      if (!row.ok()) return row.status();
+      auto change = decide(row->record);
+      if (!change.ok()) return change.status();
+      changed = change->has_value();
+      if (!changed) {
+        after = std::move(row->record);
+        return absl::OkStatus();
+      }
+      after = std::move((*change)->record);
+      state_changed = after.job.state() != row->record.job.state();
+      absl::Status written = write_change(session, row->ordinal, after, std::move((*change)->events));
+      return written.ok() && state_changed ? tell_others(session, after) : written;
+    });
+    if (!status.ok()) return status;
+    if (changed) committed(after, state_changed);
+    return after;
+  }
+
+  absl::StatusOr<std::optional<JobRecord>> lease_next(Time now, const DecideLease& decide) override {
+    for (int attempt = 1;; ++attempt) {
+      std::optional<JobRecord> leased;
+      const absl::Status status = pool_.transact(
+          [&](PostgresSession& session) { return lease_within(session, now, decide, leased); });
+      if (!status.ok()) return status;
+      if (leased) committed(*leased, true);
+      if (leased || attempt == kLeaseTries) return leased;
+      const auto more = pool_.with([&](PostgresSession& session) { return any_queued(session, now); });
+      if (!more.ok()) return more.status();
+      if (!*more) return leased;
+    }
+  }
+
+  absl::Status remove(const std::string& job_id, const Permit& permit) override {
+    const absl::Status status = pool_.transact([&](PostgresSession& session) -> absl::Status {
+      const auto row = find_job(session, job_id, PostgresSession::kForUpdate);
+      if (!row.ok()) return row.status();
+      if (absl::Status allowed = permit(row->record); !allowed.ok()) return allowed;
+      PostgresStatement erase(session, "DELETE FROM jobs WHERE ordinal = ?");  // labels and events go with it
+      if (absl::Status erased = erase.bind(row->ordinal).run(); !erased.ok()) return erased;
+      return notify(session, {own_, News::Kind::kRemoved, job_id});
+    });
+    if (status.ok() && listener_ != nullptr) listener_->removed(job_id);
+    return status;
+  }
+
+  absl::StatusOr<JobRecord> get(const std::string& job_id) override {
+    return pool_.with([&](PostgresSession& session) -> absl::StatusOr<JobRecord> {
+      auto row = find_job(session, job_id);
+      if (!row.ok()) return row.status();
+      return std::move(row->record);
+    });
+  }
+
+  absl::StatusOr<ListPage> list(const ListQuery& query) override {
+    return pool_.with([&](PostgresSession& session) { return list_jobs(session, query); });
+  }
+
+  absl::StatusOr<std::vector<v1::JobEvent>> events(const std::string& job_id, std::int64_t after_sequence,
+                                                   int limit) override {
+    return pool_.with(
+        [&](PostgresSession& session) { return read_events(session, job_id, after_sequence, limit); });
+  }
+
+  absl::StatusOr<std::int64_t> queued_before(const std::string& job_id) override {
+    return pool_.with([&](PostgresSession& session) { return count_queued_before(session, job_id); });
+  }
+
+  absl::StatusOr<std::vector<std::string>> expired_leases(Time now, int limit) override {
+    return pool_.with(
+        [&](PostgresSession& session) { return overdue_jobs(session, kExpiredLeases, now, limit); });
+  }
+
+  absl::StatusOr<std::vector<std::string>> passed_deadlines(Time now, int limit) override {
+    return pool_.with(
+        [&](PostgresSession& session) { return overdue_jobs(session, kPassedDeadlines, now, limit); });
+  }
+
+  absl::StatusOr<std::map<std::string, std::int64_t>> last_sequences(
+      const std::vector<std::string>& job_ids) override {
+    return pool_.with([&](PostgresSession& session) { return read_last_sequences(session, job_ids); });
+  }
+
+ private:
+  void committed(const JobRecord& record, bool state_changed) {
+    if (listener_ != nullptr) listener_->committed(record, state_changed);
+  }
+
+  static absl::Status notify(PostgresSession& session, const News& news) {
+    PostgresStatement tell(session, "SELECT pg_notify(?, ?)");
+    return tell.bind_text(kNewsChannel).bind_text(encode(news)).run();
+  }
+
+  absl::Status tell_others(PostgresSession& session, const JobRecord& record) const {
+    const bool queued = record.job.state() == v1::JOB_STATE_QUEUED;
+    return notify(session,
+                  {own_, queued ? News::Kind::kQueued : News::Kind::kOtherState, record.job.job_id()});
+  }
+
+  absl::Status lease_within(PostgresSession& session, Time now, const DecideLease& decide,
+                            std::optional<JobRecord>& leased) const {
+    auto row = first_queued(session, now);
+    if (!row.ok()) return row.status();
+    if (!row->has_value()) return absl::OkStatus();
+    // A sequence never gives a number twice, also when the transaction is rolled back.
+    PostgresStatement next_token(session, "SELECT nextval('fencing_tokens')");
+    if (!next_token.step())
+      return next_token.status().ok() ? absl::InternalError("store: no fencing token") : next_token.status();
+    Change change = decide((*row)->record, next_token.integer(0));
+    leased = std::move(change.record);
+    absl::Status status = write_change(session, (*row)->ordinal, *leased, std::move(change.events));
+    if (status.ok()) status = tell_others(session, *leased);
+    return status;
+  }
+
+  static absl::StatusOr<bool> any_queued(PostgresSession& session, Time now) {
+    PostgresStatement some(session, "SELECT 1 FROM jobs WHERE state = 1 AND not_before_ms <= ? LIMIT 1");
+    const bool there = some.bind(to_ms(now)).step();
+    if (!some.status().ok()) return some.status();
+    return there;
+  }
+
+  PostgresPool pool_;
+  CommitListener* const listener_;
+  const std::string own_;
+  std::optional<PostgresNews> news_;  // last: it stops before what it uses goes
+};
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<JobStore>> open_postgres_store(const PostgresOptions& options,
+                                                              CommitListener* listener) {
+  auto session = PostgresSession::open(options.where);
+  if (!session.ok()) return session.status();
+  if (absl::Status status = migrate(**session, postgres_migrations()); !status.ok()) return status;
+  return std::make_unique<PostgresStore>(options, listener);
+}
+
+}  // namespace skinframe::server
