@@ -49,9 +49,10 @@ Vector3d weaker_side(FrameProblem problem) {
 }
 
 void set_cases(FrameProblem& problem, LoadKind kind, double force_n, const Vector3d& side) {
-  problem.load_cases = {top_load(problem, "self-weight", Vector3d::Zero())};
+  problem.load_cases.clear();
   switch (kind) {
     case LoadKind::kSelf:
+      problem.load_cases.push_back(top_load(problem, "self-weight", Vector3d::Zero()));
       return;
     case LoadKind::kSide:
       problem.load_cases.push_back(top_load(problem, "side", force_n * side));

@@ -12,8 +12,8 @@ namespace skinframe::bench {
 
 enum class LoadKind {
   kSelf,   // self weight alone
-  kSide,   // self weight, and 20 N sideways: along x or y, whichever asks for more
-  kThree,  // self weight, and three cases: 20 N along y, along x, and down
+  kSide,   // one case: 20 N sideways, along x or y, whichever asks for more
+  kThree,  // three cases: 20 N along y, along x, and down
   kTop5,   // 5 N down: the paper's hanging ball
 };
 
