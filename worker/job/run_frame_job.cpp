@@ -63,7 +63,7 @@ json run_frame_job(const JobFile& file, const std::filesystem::path& out_dir, Ev
   const OptimizeResult& result = *optimised;
   const Reason reason = result.reason == Termination::kInfeasible ? Reason::kInfeasible : Reason::kNone;
   const std::string detail = reason == Reason::kNone ? "" : result.detail;
-  const json document = result_json(result);
+  const json document = result_json(result, problem->problem);
   json summary = result_summary(document);
   summary["problem"] = file.request.mesh_name;
   summary["file"] = "result.json";

@@ -68,6 +68,7 @@ class Builder {
 
   // The terms of one load case; none where nothing acts.
   void add_case(int k) {
+    if (!request_.responses[k].in_equilibrium) return;  // no field to start from
     const int load_case = request_.load_cases[k];
     const bool gravity = problem_.load_cases[load_case].gravity;
     const double half_weight = gravity ? problem_.material.weight_density_n_mm3() / 2 : 0.0;

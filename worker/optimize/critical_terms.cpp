@@ -25,10 +25,10 @@ CriticalTerms critical_terms(const FrameProblem& problem, const std::vector<doub
   std::vector<CaseResponse> responses = solve_equilibrium(problem, areas_mm2);
   std::vector<double> demand;
   for (const CaseResponse& response : responses)
-    demand.push_back(response.in_equilibrium ? utilisation(evaluate(problem, radii, {response})) : 0.0);
+    demand.push_back(utilisation(evaluate(problem, radii, {response})));
   CriticalTerms critical;
   for (int k : greatest_first(demand)) {
-    if (static_cast<int>(critical.load_cases.size()) == most_cases || !responses[k].in_equilibrium) break;
+    if (static_cast<int>(critical.load_cases.size()) == most_cases) break;
     if (!critical.load_cases.empty() && demand[k] < binding_share) break;
     critical.load_cases.push_back(k);
     critical.responses.push_back(std::move(responses[k]));

@@ -12,8 +12,9 @@ struct CriticalTerms {
   std::vector<CaseResponse> responses;  // one a load case named
 };
 
-// Load cases whose demand is at least `binding_share` of the limit, and the first in any case; half planes
-// that the centre of gravity is nearest to.
+// Load cases whose demand is at least `binding_share` of the limit, and the first in any case; infinite where
+// the frame is a mechanism, whose responses are then out of equilibrium. Half planes that the centre of
+// gravity is nearest to.
 CriticalTerms critical_terms(const FrameProblem& problem, const std::vector<double>& areas_mm2,
                              double binding_share, int most_cases, int most_half_planes);
 

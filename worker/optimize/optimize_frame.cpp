@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <new>
@@ -13,6 +14,7 @@
 #include "worker/optimize/session.h"
 #include "worker/optimize/size_frame.h"
 #include "worker/optimize/topology_stage.h"
+#include "worker/optimize/volume_lower_bound.h"
 
 namespace skinframe {
 namespace {
@@ -94,16 +96,50 @@ class Algorithm {
 
   void size() {
     timed("size", Stage::kSize, [&] {
-      SizedFrame sized = size_frame(design_.problem, {}, session_);
+      SizedFrame sized = size_frame(design_.problem, {}, session_, SizingEffort::kBestReachable);
       if (sized.cancelled) return;
       result_.violated_constraint = sized.violated_constraint;
-      result_.lower_bound_mm3 = sized.lower_bound_mm3;
+      result_.certificate = std::move(sized.certificate);
       if (sized.violated_constraint == "displacement")
         result_.best_reachable_displacement_mm = sized.evaluation.max_displacement_mm;
       if (sized.lower_bound_mm3) sized.detail += ": the global optimum for the nodes and struts given";
       take_sizing(design_, std::move(sized));
     });
     result_.size = result_.topology = result_.geometry = record_of(design_.problem, design_.volume_mm3);
+    if (session_.cancelled() || !options_.bounds || design_.reason == Termination::kInfeasible) return;
+    timed("bound", Stage::kSize, [&] {
+      VolumeBound bound = bound_below(design_.problem, design_.areas_mm2, {}, result_.size.volume_mm3);
+      result_.gap = gap_above(bound.value_mm3, result_.size.volume_mm3);
+      result_.lower_bound_mm3 = bound.value_mm3;
+      result_.lower_bound_proof = std::move(bound.proof);
+    });
+  }
+
+  VolumeBound bound_below(const FrameProblem& problem, const std::vector<double>& areas_mm2,
+                          const std::vector<bool>& may_vanish, double volume_mm3) const {
+    BoundRequest request;
+    request.box = area_box(problem, may_vanish);
+    request.start_mm2 = areas_mm2;
+    request.volume_mm3 = volume_mm3;
+    request.feasibility_tolerance = options_.feasibility_tolerance;
+    request.cancelled = [this] { return session_.cancelled(); };
+    return volume_lower_bound(problem, request);
+  }
+
+  static std::optional<double> gap_above(double bound_mm3, double volume_mm3) {
+    return bound_mm3 > 0 ? std::optional(volume_mm3 / bound_mm3 - 1) : std::nullopt;
+  }
+
+  // Of what topology optimisation has made of the frame that was sized.
+  void bound_removal(const Design& sized) {
+    const std::vector<bool> removable = removable_struts(sized.problem);
+    if (!options_.bounds || std::find(removable.begin(), removable.end(), true) == removable.end()) return;
+    timed("bound", Stage::kTopology, [&] {
+      VolumeBound bound = bound_below(sized.problem, sized.areas_mm2, removable, result_.topology.volume_mm3);
+      result_.relaxed_gap = gap_above(bound.value_mm3, result_.topology.volume_mm3);
+      result_.relaxed_lower_bound_mm3 = bound.value_mm3;
+      result_.relaxed_lower_bound_proof = std::move(bound.proof);
+    });
   }
 
   // TopOpt and GeoOpt in turn until the volume falls by less than outer_decrease.
@@ -111,6 +147,7 @@ class Algorithm {
     const bool topology =
         options_.topology || (options_.relaxed && options_.order == OptimizeOptions::Order::kTight);
     if (!topology && !options_.geometry) return;
+    const Design sized = design_;
     for (int round = 0; round < options_.max_outer_iterations; ++round) {
       const double before = design_.volume_mm3;
       const std::size_t struts = design_.problem.frame.struts.size();
@@ -118,7 +155,10 @@ class Algorithm {
         timed("topology", Stage::kTopology,
               [&] { design_ = optimise_topology(std::move(design_), session_); });
       if (session_.cancelled()) return;
-      if (round == 0) result_.topology = record_of(design_.problem, design_.volume_mm3);
+      if (round == 0) {
+        result_.topology = record_of(design_.problem, design_.volume_mm3);
+        if (topology) bound_removal(sized);
+      }
       if (round > 0 && design_.problem.frame.struts.size() == struts)
         return;  // geometry has already had this frame
       if (options_.geometry)

@@ -6,6 +6,7 @@
 //  - Same problem and options, same result, bit for bit.
 //  - The result is a value for every ending that is not cancellation or bad input: see Termination.
 //  - Volumes of size, topology and geometry never rise from one to the next, beyond kVolumeTie.
+//  - lower_bound_mm3 <= size volume, relaxed_lower_bound_mm3 <= topology volume.
 //  - `evaluation` is computed afresh from radii and positions, not taken from the optimiser.
 #pragma once
 
@@ -19,6 +20,7 @@
 #include "worker/frame/half_space.h"
 #include "worker/mechanics/evaluation.h"
 #include "worker/mechanics/frame_problem.h"
+#include "worker/optimize/infeasibility_certificate.h"
 #include "worker/run/result.h"
 #include "worker/run/run_context.h"
 
@@ -43,6 +45,10 @@ struct OptimizeOptions {
   // times, then the pass is dropped. Topology drops a removal that turns an accepted frame into one that is
   // not. Empty: every frame is accepted.
   std::function<bool(const Frame&, const std::vector<double>& radii_mm)> accepts;
+
+  // Whether lower bounds on the volume are computed, after sizing and after the first topology stage. They
+  // change nothing else.
+  bool bounds = true;
 
   // Interior point: scaled Karush-Kuhn-Tucker error <= kkt_tolerance (nondimensional problem), range (0,
   // 1e-3].
@@ -110,9 +116,17 @@ struct OptimizeResult {
   int outer_iterations = 0;           // of Algorithm 1
   int interior_point_iterations = 0;  // over all programs
   double kkt_residual = 0;            // of the last sizing: scaled, nondimensional
-  // No frame of the input's nodes and struts within the area bounds of SizeOpt has less volume. Absent: no
-  // bound is known.
-  std::optional<double> lower_bound_mm3;
+  // No frame of the input's nodes and struts, each radius within its bounds and slenderness, keeps the limits
+  // with less volume (volume_lower_bound.h); gap = size volume / bound - 1. Absent: infeasible or not asked
+  // for.
+  std::optional<double> lower_bound_mm3, gap;
+  // The same where removable struts may also be absent (design.h): of every frame that removing struts can
+  // make, nodes where they are in the input; gap = topology volume / bound - 1. Absent: nothing was removed.
+  std::optional<double> relaxed_lower_bound_mm3, relaxed_gap;
+  std::optional<DualProof> lower_bound_proof, relaxed_lower_bound_proof;  // of the input's nodes and struts
+  // Infeasible and proven: no radii within their bounds keep the limits. The problem is then `problem`, which
+  // has the input's nodes and struts.
+  std::optional<InfeasibilityCertificate> certificate;
   std::optional<double> best_reachable_displacement_mm;  // when that is violated_constraint
   std::string
       violated_constraint;  // when infeasible: displacement, axial stress, shear stress, balance, equilibrium

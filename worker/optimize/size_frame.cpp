@@ -30,8 +30,8 @@ constexpr double kOptimalRepair = 1e-4;
 
 class Sizing {
  public:
-  Sizing(const FrameProblem& problem, Session& session)
-      : problem_(problem), session_(session), solver_(problem) {
+  Sizing(const FrameProblem& problem, Session& session, SizingEffort effort)
+      : problem_(problem), session_(session), effort_(effort), solver_(problem) {
     set_size_bounds(problem, bounds_);
   }
 
@@ -47,8 +47,16 @@ class Sizing {
       UniformStart uniform = uniform_start(problem_, bounds_.lower_mm2, bounds_.upper_mm2, solver_);
       start = std::move(uniform.areas_mm2);
       if (uniform.utilisation > 1) {
-        const SizedFrame reached = least_utilisation(start, uniform.utilisation);
-        if (!reached.feasible()) return reached;
+        auto proof = certify_infeasible(problem_, certificate_request(start));
+        if (session_.cancelled()) return cancelled();
+        if (proof && effort_ == SizingEffort::kVerdict)
+          return judged(at(Termination::kInfeasible, start, ""), std::move(proof));
+        SizedFrame reached = least_utilisation(start, uniform.utilisation);
+        if (reached.cancelled) return reached;
+        if (!reached.feasible()) {
+          if (!proof) proof = certify_infeasible(problem_, certificate_request(reached.areas_mm2));
+          return judged(std::move(reached), std::move(proof));
+        }
         start = reached.areas_mm2;
       }
     }
@@ -76,6 +84,27 @@ class Sizing {
           violated_constraint(sized.evaluation, session_.options().feasibility_tolerance);
     return sized;
   }
+  CertificateRequest certificate_request(std::vector<double> near_mm2) const {
+    return {{bounds_.lower_mm2, bounds_.upper_mm2},
+            std::move(near_mm2),
+            session_.options().feasibility_tolerance,
+            [this] { return session_.cancelled(); }};
+  }
+
+  // The verdict on an infeasible frame, in words: proven or not, and how near it comes. Its detail so far
+  // says how the search for it ended.
+  SizedFrame judged(SizedFrame reached, std::optional<InfeasibilityCertificate> proof) {
+    const std::string how = std::move(reached.detail);
+    const double used = utilisation(reached.evaluation);
+    reached.detail = reached.violated_constraint + " cannot be kept, ";
+    reached.detail += proof ? "proven: no radii within their bounds keep the limits" : "not proven";
+    if (reached.violated_constraint != "balance" && std::isfinite(used))
+      reached.detail += fmt::format("; best found: {:.4g} times the limit", used);
+    if (!how.empty()) reached.detail += fmt::format(" ({})", how);
+    reached.certificate = std::move(proof);
+    return reached;
+  }
+
   SizedFrame cancelled() {
     SizedFrame sized;
     sized.cancelled = true;
@@ -158,15 +187,13 @@ class Sizing {
     const double best = utilisation(reached.evaluation);
     if (!(best <= start_utilisation))
       reached = at(Termination::kInfeasible, start, "");  // the search made it worse
-    if (best <= 1) {
+    if (best <= 1 + session_.options().feasibility_tolerance) {
       reached.reason = Termination::kOptimal;
       return reached;
     }
     reached.kkt_error = outcome.kkt_error;
-    reached.detail = fmt::format(
-        "{} cannot be kept: the best reachable is {:.4g} times the limit ({})", reached.violated_constraint,
-        utilisation(reached.evaluation),
-        outcome.converged() ? "a local optimum of the least violation" : "the search stopped early");
+    reached.detail =
+        outcome.converged() ? "a local optimum of the least violation" : "its search stopped early";
     return reached;
   }
 
@@ -195,11 +222,10 @@ class Sizing {
       return std::nullopt;
     }
     leaning.violated_constraint = "balance";
-    leaning.detail = fmt::format(
-        "balance cannot be kept: within the bounds on the radii the centre of gravity stays {:.4g} mm "
-        "outside the base",
-        -leaning.evaluation.balance_margin_mm);
-    return leaning;
+    leaning.detail = fmt::format("the centre of gravity comes within {:.4g} mm of the base",
+                                 -leaning.evaluation.balance_margin_mm);
+    auto proof = certify_unbalanced(problem_, certificate_request(leaning.areas_mm2));
+    return judged(std::move(leaning), std::move(proof));
   }
 
   // What misses the limits by the program's tolerance only, thickened until it keeps them.
@@ -240,13 +266,14 @@ class Sizing {
     sized.reason = Termination::kInfeasible;
     sized.violated_constraint =
         violated_constraint(sized.evaluation, session_.options().feasibility_tolerance);
-    sized.detail = fmt::format("{} is not kept where the search ended: no feasible frame was found",
-                               sized.violated_constraint);
-    return sized;
+    auto proof = certify_infeasible(problem_, certificate_request(sized.areas_mm2));
+    sized.detail = "where the search for the least volume ended";
+    return judged(std::move(sized), std::move(proof));
   }
 
   const FrameProblem& problem_;
   Session& session_;
+  const SizingEffort effort_;
   EquilibriumSolver solver_;
   ProgramRequest bounds_;
   std::vector<double> balanced_mm2_;  // where the search for balance ended; empty: it was not needed
@@ -266,8 +293,9 @@ void take_sizing(Design& design, SizedFrame sized) {
   design.kkt_error = sized.kkt_error;
 }
 
-SizedFrame size_frame(const FrameProblem& problem, const std::vector<double>& hint_mm2, Session& session) {
-  return Sizing(problem, session).run(hint_mm2);
+SizedFrame size_frame(const FrameProblem& problem, const std::vector<double>& hint_mm2, Session& session,
+                      SizingEffort effort) {
+  return Sizing(problem, session, effort).run(hint_mm2);
 }
 
 }  // namespace skinframe

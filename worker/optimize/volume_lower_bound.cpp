@@ -23,7 +23,7 @@ VolumeBound volume_lower_bound(const FrameProblem& problem, const BoundRequest& 
   VolumeBound bound;
   bound.proof.volume_weight = 1;
   bound.proof.feasibility_tolerance = request.feasibility_tolerance;
-  bound.value_mm3 = dual_value(problem, request.box, bound.proof).value;
+  bound.value_mm3 = (1 - kBoundRounding) * dual_value(problem, request.box, bound.proof).value;
   const auto met = [&] { return bound.value_mm3 >= (1 - kMet) * request.volume_mm3; };
 
   const CriticalTerms critical =
@@ -56,9 +56,9 @@ VolumeBound volume_lower_bound(const FrameProblem& problem, const BoundRequest& 
   solve_relaxation(relaxation, areas, stacked_displacements(relaxation, critical), options);
   if (!(best_value > 0)) return bound;
   DualProof proof = proof_of(relaxation, best, best_factor, problem.balance.size());
-  const double value = dual_value(problem, request.box, proof).value;
-  if (!(value * (1 - kBoundRounding) > bound.value_mm3)) return bound;
-  bound.value_mm3 = value * (1 - kBoundRounding);
+  const double value = (1 - kBoundRounding) * dual_value(problem, request.box, proof).value;
+  if (!(value > bound.value_mm3)) return bound;
+  bound.value_mm3 = value;
   bound.proof = std::move(proof);
   return bound;
 }

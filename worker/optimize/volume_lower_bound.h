@@ -17,7 +17,7 @@ namespace skinframe {
 
 inline constexpr int kMostBoundCases = 3;
 inline constexpr int kMostBoundHalfPlanes = 8;
-inline constexpr double kBoundRounding = 1e-10;
+inline constexpr double kBoundRounding = 1e-11;
 
 struct BoundRequest {
   AreaBox box;

@@ -11,6 +11,7 @@
 #include "worker/pipeline/write_json.h"
 #include "worker/pipeline/write_results.h"
 #include "worker/problem/problem_file.h"
+#include "worker/problem/proof_json.h"
 
 namespace skinframe {
 namespace {
@@ -121,6 +122,7 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
   report.seconds.insert(result.seconds.begin(), result.seconds.end());
   const auto folder = out_dir / printer.id;
   auto frame_json = to_json(result.problem, result.radii_mm, result.displacements_mm);
+  if (result.certificate) frame_json["certificate"] = certificate_json(*result.certificate);
   if (auto written = write_json(folder / "frame.json", frame_json); !written) return written.error();
   if (!merged.value()) return report;
   const PrintableMesh& printable = *merged.value();

@@ -10,6 +10,7 @@
 
 #include "worker/mechanics/equilibrium.h"
 #include "worker/problem/problem_file.h"
+#include "worker/problem/proof_json.h"
 
 namespace skinframe {
 namespace {
@@ -50,9 +51,23 @@ void add_forces(const OptimizeResult& result, json& cases) {
   }
 }
 
+void add_bounds(const OptimizeResult& result, const FrameProblem& given, json& document) {
+  document["lower_bound_mm3"] = optional_json(result.lower_bound_mm3);
+  document["gap"] = optional_json(result.gap);
+  document["relaxed_lower_bound_mm3"] = optional_json(result.relaxed_lower_bound_mm3);
+  document["relaxed_gap"] = optional_json(result.relaxed_gap);
+  document["certificate"] = result.certificate ? certificate_json(*result.certificate) : json(nullptr);
+  const auto proof = [&](const std::optional<DualProof>& of, bool removable_may_vanish) {
+    return of ? bound_proof_json(given, *of, removable_may_vanish) : json(nullptr);
+  };
+  document["lower_bound_proof"] = proof(result.lower_bound_proof, false);
+  document["relaxed_lower_bound_proof"] = proof(result.relaxed_lower_bound_proof, true);
+  if (result.lower_bound_proof) document["given"] = to_json(given, {}, {});
+}
+
 }  // namespace
 
-json result_json(const OptimizeResult& result) {
+json result_json(const OptimizeResult& result, const FrameProblem& given) {
   json document = to_json(result.problem, result.radii_mm, result.displacements_mm);
   add_forces(result, document["load_cases"]);
   document["termination"] = {
@@ -68,10 +83,7 @@ json result_json(const OptimizeResult& result) {
     document["volumes_mm3"][name] = record->volume_mm3;
     document["counts"][name] = {{"nodes", record->nodes}, {"struts", record->struts}};
   }
-  document["lower_bound_mm3"] = optional_json(result.lower_bound_mm3);
-  document["gap"] = nullptr;
-  if (result.lower_bound_mm3 && result.size.volume_mm3 > 0)
-    document["gap"] = 1 - *result.lower_bound_mm3 / result.size.volume_mm3;
+  add_bounds(result, given, document);
   document["iterations"] = {{"outer", result.outer_iterations},
                             {"interior_point", result.interior_point_iterations}};
   document["kkt_residual"] = result.kkt_residual;

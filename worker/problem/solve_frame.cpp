@@ -39,9 +39,14 @@ std::string summary_text(const OptimizeResult& r) {
       {"initial", &r.initial}, {"size", &r.size}, {"topology", &r.topology}, {"geometry", &r.geometry}};
   for (const auto& [name, stage] : stages)
     text += fmt::format("{:<10}{:>14.6g}{:>9}{:>9}\n", name, stage->volume_mm3, stage->nodes, stage->struts);
-  if (r.lower_bound_mm3 && r.size.volume_mm3 > 0)
-    text += fmt::format("lower bound {:.6g} mm3, gap {:.3g} % of the sized frame\n", *r.lower_bound_mm3,
-                        100 * (1 - *r.lower_bound_mm3 / r.size.volume_mm3));
+  if (r.lower_bound_mm3 && r.gap)
+    text += fmt::format("lower bound {:.6g} mm3 for radii within their bounds: size is {:.3g} % above\n",
+                        *r.lower_bound_mm3, 100 * *r.gap);
+  if (r.relaxed_lower_bound_mm3 && r.relaxed_gap)
+    text += fmt::format("lower bound {:.6g} mm3 with struts removed: topology is {:.3g} % above\n",
+                        *r.relaxed_lower_bound_mm3, 100 * *r.relaxed_gap);
+  if (r.best_reachable_displacement_mm)
+    text += fmt::format("best displacement found {:.6g} mm\n", *r.best_reachable_displacement_mm);
   text += fmt::format("displacement {:.6g} mm, axial ratio {:.4g}, shear ratio {:.4g} ({} model)\n",
                       r.evaluation.max_displacement_mm, r.evaluation.max_axial_ratio,
                       r.evaluation.max_shear_ratio, to_string(r.problem.element));
@@ -67,7 +72,7 @@ int solve(const std::filesystem::path& problem, const std::filesystem::path& out
   if (!file) return fail(file.error());
   const auto result = optimize_frame(file->problem, file->options, context);
   if (!result) return fail(result.error());
-  const nlohmann::json document = result_json(*result);
+  const nlohmann::json document = result_json(*result, file->problem);
   if (const Status written = write_result(document, out); !written) {
     std::cerr << "skinframe: " << written.error().message << '\n';
     return kInternal;

@@ -45,6 +45,17 @@ json thin_json(const ThinParts& thin) {
           {"regions", regions}};
 }
 
+void add_bounds(const OptimizeResult& result, json& out) {
+  const auto add = [&](const char* name, const std::optional<double>& value) {
+    if (value) out[name] = *value;
+  };
+  add("lower_bound_mm3", result.lower_bound_mm3);
+  add("gap", result.gap);
+  add("relaxed_lower_bound_mm3", result.relaxed_lower_bound_mm3);
+  add("relaxed_gap", result.relaxed_gap);
+  if (result.reason == Termination::kInfeasible) out["infeasibility_proven"] = result.certificate.has_value();
+}
+
 }  // namespace
 
 const char* to_string(Reason reason) {
@@ -169,7 +180,7 @@ json to_json(const PrinterReport& report) {
               {"termination", {{"reason", report.termination}, {"detail", report.termination_detail}}}};
   if (report.thin) out["thin"] = thin_json(*report.thin);
   if (s.balance_margin_mm) out["balance_margin_mm"] = *s.balance_margin_mm;
-  if (result.lower_bound_mm3) out["lower_bound_mm3"] = *result.lower_bound_mm3;
+  add_bounds(result, out);
   if (result.best_reachable_displacement_mm)
     out["best_reachable_displacement_mm"] = *result.best_reachable_displacement_mm;
   if (!result.violated_constraint.empty()) out["violated_constraint"] = result.violated_constraint;

@@ -2,6 +2,12 @@
 // report.json: what a job tells its user, one object a printer. Nominal figures (the paper's: sum of pi r^2 l
 // plus skin) and those of the exported mesh stand apart; figures of the paper's mechanical model are named so
 // in "model". A field is there when its value is known; nothing is guessed.
+//
+// "lower_bound_mm3": no radii within their bounds on the initial nodes and struts keep the limits with less
+// frame volume; "gap": size_volume_mm3 / it - 1. "relaxed_lower_bound_mm3", "relaxed_gap": the same where
+// removable struts may also be absent, against topology_volume_mm3. Nodes stand where they were sampled:
+// neither bounds what geometry optimisation reaches by moving them. "infeasibility_proven": whether
+// frame.json has a certificate that no radii keep the limits.
 #pragma once
 
 #include <map>
