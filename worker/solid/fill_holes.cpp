@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <unordered_map>
@@ -103,6 +104,42 @@ std::vector<Opening> find_openings(const TriangleMesh& mesh) {
     }
   }
   return openings;
+}
+
+namespace {
+
+// Twice the area, along the normal of the loop (Newell).
+Eigen::Vector3d area_vector(const TriangleMesh& mesh, const Opening& opening) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < opening.loop.size(); ++i) {
+    const Eigen::Vector3d p = mesh.vertices[opening.loop[i]] - opening.middle;
+    const Eigen::Vector3d q = mesh.vertices[opening.loop[(i + 1) % opening.loop.size()]] - opening.middle;
+    sum += p.cross(q);
+  }
+  return sum;
+}
+
+}  // namespace
+
+bool is_flat_cut(const TriangleMesh& mesh, const Opening& opening, double tolerance) {
+  const Eigen::Vector3d normal = area_vector(mesh, opening).normalized();
+  if (normal.norm() < 0.5) return false;
+  const double most = tolerance * opening.length;
+  for (const int v : opening.loop) {
+    if (std::abs((mesh.vertices[v] - opening.middle).dot(normal)) > most) return false;
+  }
+  // The cap looks along the normal of the loop in the filling sense: the body lies behind it.
+  double highest = 0, lowest = 0;
+  for (const Eigen::Vector3d& v : mesh.vertices) {
+    const double height = (v - opening.middle).dot(normal);
+    highest = std::max(highest, height);
+    lowest = std::min(lowest, height);
+  }
+  return highest <= most && lowest < -2 * most;
+}
+
+double opening_area(const TriangleMesh& mesh, const Opening& opening) {
+  return area_vector(mesh, opening).norm() / 2;
 }
 
 void fill_openings(TriangleMesh& mesh, const std::vector<Opening>& openings) {

@@ -18,6 +18,14 @@ struct Opening {
 // In order of the lowest half-edge. A loop that passes a vertex twice is split there into simple loops.
 std::vector<Opening> find_openings(const TriangleMesh& mesh);
 
+// Whether the opening is where a plane cut the body off, like the base of a bust: the rim departs from its
+// plane by at most `tolerance` of its length, and the whole mesh, which is no sheet, lies on one side of it.
+inline constexpr double kFlatCutTolerance = 0.02;
+bool is_flat_cut(const TriangleMesh& mesh, const Opening& opening, double tolerance = kFlatCutTolerance);
+
+// Of the polygon of the opening, seen along its normal.
+double opening_area(const TriangleMesh& mesh, const Opening& opening);
+
 // Adds triangles that close the openings (Liepa 2003: the least worst dihedral angle, then area); where their
 // inner edges would meet edges that exist, a fan from the middle of the loop instead.
 void fill_openings(TriangleMesh& mesh, const std::vector<Opening>& openings);

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From what a file holds to a Solid, by the least change that closes it: weld, drop duplicates and
-// degenerate triangles, orient, part what touches only along an edge, fill small holes, turn outward.
+// degenerate triangles, orient, drop sheets without thickness, part what touches only along an edge, fill
+// small holes, turn outward, unite bodies that overlap.
 //
 // What cannot be closed is kInvalidInput with a sentence that names the defect (open boundary: how many, the
-// longest, where; non-orientable; encloses no volume). A large opening is never capped. Slight
-// self-intersections are accepted and told in a warning.
+// longest, where; non-orientable; encloses no volume). A large opening is only capped where a plane cut the
+// body off, and that is told. Slight self-intersections are accepted and told in a warning with what they
+// change. Where a surface with small openings cannot be mended as it is, it is wrapped as a last resort, if
+// its volume stays; the sentence says so.
 #pragma once
 
 #include <string>
@@ -26,11 +29,18 @@ struct RepairOptions {
   double max_weld_tolerance_relative = 1e-4;
   // A hole is filled when its boundary is not longer than this times the diagonal. In [0, 1].
   double max_hole_relative = 0.1;
+  // The same for a hole that is a flat cut through the whole body. The rim of a vessel is longer. In [0, 1].
+  double max_flat_cut_relative = 1.0;
   // Shells whose box diagonal is below this times the whole diagonal are dropped when they are open or
   // enclose next to nothing. In [0, 0.1].
   double max_debris_relative = 1e-3;
-  // Looking for self-intersections costs about a second per 500k triangles and only yields a warning.
-  bool count_self_intersections = true;
+  // Looking for overlaps costs about a second per 500k triangles.
+  bool unite_overlaps = true;
+  // A surface that crosses itself is left as it is while the volume that is enclosed twice or inside out is
+  // at most this share of it. In [0, 1].
+  double max_self_overlap_relative = 0.01;
+  // Of a wrap. In [0, 1]; 0: never wrapped.
+  double max_wrap_volume_change_relative = 0.05;
 
   Status validate() const;
 };

@@ -1,37 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/solid/self_intersections.h"
 
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
-#include <CGAL/Surface_mesh.h>
 
-#include <utility>
-#include <vector>
+#include <algorithm>
+
+#include "worker/solid/surface_mesh.h"
 
 namespace skinframe {
 
 namespace PMP = CGAL::Polygon_mesh_processing;
 
-std::size_t count_self_intersections(const TriangleMesh& mesh) {
-  using Point = CGAL::Exact_predicates_inexact_constructions_kernel::Point_3;
-  using SurfaceMesh = CGAL::Surface_mesh<Point>;
-  std::vector<Point> points;
-  points.reserve(mesh.vertices.size());
-  for (const Eigen::Vector3d& p : mesh.vertices) points.emplace_back(p.x(), p.y(), p.z());
-  std::vector<std::vector<std::size_t>> triangles;
-  triangles.reserve(mesh.triangles.size());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    triangles.push_back(
-        {static_cast<std::size_t>(a), static_cast<std::size_t>(b), static_cast<std::size_t>(c)});
+std::vector<std::pair<int, int>> find_self_intersections(const TriangleMesh& mesh) {
+  PolygonSoupOfCgal soup = to_cgal_soup(mesh);
+  // Gives every umbrella a vertex, as Surface_mesh wants it; faces keep their order.
+  PMP::orient_polygon_soup(soup.points, soup.triangles);
+  CgalMesh surface;
+  PMP::polygon_soup_to_polygon_mesh(soup.points, soup.triangles, surface);
+  std::vector<std::pair<CgalMesh::Face_index, CgalMesh::Face_index>> found;
+  PMP::self_intersections(surface, std::back_inserter(found));
+  std::vector<std::pair<int, int>> pairs;
+  pairs.reserve(found.size());
+  for (const auto& [a, b] : found) {
+    const int first = static_cast<int>(std::size_t{a}), second = static_cast<int>(std::size_t{b});
+    pairs.emplace_back(std::min(first, second), std::max(first, second));
   }
-  PMP::orient_polygon_soup(points, triangles);  // gives every umbrella a vertex, as Surface_mesh wants it
-  SurfaceMesh surface;
-  PMP::polygon_soup_to_polygon_mesh(points, triangles, surface);
-  std::vector<std::pair<SurfaceMesh::Face_index, SurfaceMesh::Face_index>> pairs;
-  PMP::self_intersections(surface, std::back_inserter(pairs));
-  return pairs.size();
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
 }
 
 }  // namespace skinframe

@@ -13,14 +13,36 @@
 namespace skinframe {
 namespace {
 
-struct Shell {
-  std::vector<int> triangles;
-  BoundingBox box;
-  double volume = 0;  // signed; about the box's corner
-  bool closed = true;
-};
+void drop_shells(TriangleMesh& mesh, const std::vector<Shell>& shells, const std::vector<char>& dropped) {
+  std::vector<char> gone(mesh.triangles.size(), 0);
+  for (std::size_t s = 0; s < shells.size(); ++s) {
+    if (!dropped[s]) continue;
+    for (const int t : shells[s].triangles) gone[t] = 1;
+  }
+  std::size_t next = 0;
+  for (std::size_t t = 0; t < gone.size(); ++t) {
+    if (!gone[t]) mesh.triangles[next++] = mesh.triangles[t];
+  }
+  mesh.triangles.resize(next);
+  drop_unused_vertices(mesh);
+}
 
-// Triangles that share an edge are of one shell.
+// Sum of the solid angles of the shell's triangles over 4 pi (Van Oosterom and Strackee 1983).
+bool encloses(const TriangleMesh& mesh, const Shell& shell, const Eigen::Vector3d& point) {
+  double half_angles = 0;
+  for (const int t : shell.triangles) {
+    const Eigen::Vector3d a = mesh.vertices[mesh.triangles[t][0]] - point;
+    const Eigen::Vector3d b = mesh.vertices[mesh.triangles[t][1]] - point;
+    const Eigen::Vector3d c = mesh.vertices[mesh.triangles[t][2]] - point;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    half_angles +=
+        std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return std::abs(half_angles) > std::numbers::pi;  // half of the full 2 pi
+}
+
+}  // namespace
+
 std::vector<Shell> find_shells(const TriangleMesh& mesh) {
   const int count = static_cast<int>(mesh.triangles.size());
   DisjointSets sets(mesh.triangles.size());
@@ -58,35 +80,7 @@ std::vector<Shell> find_shells(const TriangleMesh& mesh) {
   return shells;
 }
 
-void drop_shells(TriangleMesh& mesh, const std::vector<Shell>& shells, const std::vector<char>& dropped) {
-  std::vector<char> gone(mesh.triangles.size(), 0);
-  for (std::size_t s = 0; s < shells.size(); ++s) {
-    if (!dropped[s]) continue;
-    for (const int t : shells[s].triangles) gone[t] = 1;
-  }
-  std::size_t next = 0;
-  for (std::size_t t = 0; t < gone.size(); ++t) {
-    if (!gone[t]) mesh.triangles[next++] = mesh.triangles[t];
-  }
-  mesh.triangles.resize(next);
-  drop_unused_vertices(mesh);
-}
-
-// Sum of the solid angles of the shell's triangles over 4 pi (Van Oosterom and Strackee 1983).
-bool encloses(const TriangleMesh& mesh, const Shell& shell, const Eigen::Vector3d& point) {
-  double half_angles = 0;
-  for (const int t : shell.triangles) {
-    const Eigen::Vector3d a = mesh.vertices[mesh.triangles[t][0]] - point;
-    const Eigen::Vector3d b = mesh.vertices[mesh.triangles[t][1]] - point;
-    const Eigen::Vector3d c = mesh.vertices[mesh.triangles[t][2]] - point;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    half_angles +=
-        std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return std::abs(half_angles) > std::numbers::pi;  // half of the full 2 pi
-}
-
-// Wholly: shells that merely cross each other are left alone, so several points are asked.
+// Shells that merely cross each other are left alone, so several points are asked.
 bool contains(const TriangleMesh& mesh, const Shell& outer, const Shell& inner) {
   if ((inner.box.min.array() < outer.box.min.array()).any() ||
       (inner.box.max.array() > outer.box.max.array()).any()) {
@@ -99,8 +93,6 @@ bool contains(const TriangleMesh& mesh, const Shell& outer, const Shell& inner) 
   }
   return true;
 }
-
-}  // namespace
 
 std::size_t drop_small_open_shells(TriangleMesh& mesh, double size) {
   const std::vector<Shell> shells = find_shells(mesh);

@@ -3,11 +3,25 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
 #include "worker/mesh/triangle_mesh.h"
 #include "worker/run/result.h"
 
 namespace skinframe {
+
+struct Shell {
+  std::vector<int> triangles;
+  BoundingBox box;
+  double volume = 0;  // signed; about the box's corner
+  bool closed = true;
+};
+
+// Triangles that share an edge are of one shell. In the order of their first triangles.
+std::vector<Shell> find_shells(const TriangleMesh& mesh);
+
+// Whether `outer`, which is closed, has all of `inner` within it; shells that merely cross do not.
+bool contains(const TriangleMesh& mesh, const Shell& outer, const Shell& inner);
 
 // Drops open shells whose box diagonal is at most `size`. Returns how many.
 std::size_t drop_small_open_shells(TriangleMesh& mesh, double size);

@@ -135,7 +135,7 @@ TEST(Repair, TheLimitOfAHoleIsAnOption) {
   RepairOptions options;
   RunContext context;
   EXPECT_TRUE(repair(mesh, options, context).ok());
-  options.max_hole_relative = 0.01;
+  options.max_hole_relative = options.max_flat_cut_relative = 0.01;
   EXPECT_FALSE(repair(mesh, options, context).ok());
 }
 
@@ -177,10 +177,81 @@ TEST(Repair, AShellWithinMaterialThatLooksOutwardIsSwallowed) {
   EXPECT_THAT(outcome->repairs, ElementsAre("dropped 1 shell within the material of another"));
 }
 
-TEST(Repair, BodiesThatCrossAreAcceptedWithAWarning) {
+TEST(Repair, BodiesThatOverlapBecomeOne) {
   const auto outcome = mend(merged(cube(20), moved(cube(20), {10, 9, 8})));
   ASSERT_TRUE(outcome.ok()) << outcome.error().message;
-  EXPECT_THAT(outcome->warnings, ElementsAre(HasSubstr("triangles cut each other")));
+  EXPECT_NEAR(outcome->solid.volume_mm3(), 2 * 8000 - 10 * 11 * 12, 0.05);
+  EXPECT_THAT(
+      outcome->repairs,
+      ElementsAre("united 2 shells that overlap: their volumes add up to 16000 mm3 and enclose 14680 mm3"));
+  EXPECT_THAT(outcome->warnings, IsEmpty());
+}
+
+TEST(Repair, AFlatCutThroughTheWholeBodyIsCappedAndToldOf) {
+  TriangleMesh bust = ball(50, 80, 40);  // its last three rings cut away: open where a plane cut it off
+  const double plane = -50 * std::cos(3 * std::numbers::pi / 40);
+  std::erase_if(bust.triangles, [&](const auto& t) {
+    return bust.vertices[t[0]].z() + bust.vertices[t[1]].z() + bust.vertices[t[2]].z() < 3 * plane - 1e-6;
+  });
+  const auto outcome = mend(bust);
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  EXPECT_THAT(outcome->repairs, Contains(HasSubstr("capped the flat cut of 80 edges")));
+  const double height = 50 + plane;  // of the cap that is missing
+  const double missing = std::numbers::pi * height * height * (50 - height / 3);
+  EXPECT_NEAR(outcome->solid.volume_mm3() / (signed_volume(ball(50, 80, 40)) - missing), 1, 1e-3);
+  EXPECT_NEAR(outcome->solid.box().min.z(), plane, 1e-4);
+}
+
+TEST(Repair, AnEdgeThatLiesAlongTwoShortOnesIsNoHole) {
+  TriangleMesh mesh = cube(20);
+  // The side y = 20 gets the middle of its lower edge; its neighbour z = 0 does not know of it.
+  const int middle = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.emplace_back(10, 20, 0);
+  std::erase(mesh.triangles, std::array<int, 3>{2, 6, 3});
+  mesh.triangles.push_back({2, 6, middle});
+  mesh.triangles.push_back({middle, 6, 3});
+  const auto outcome = mend(mesh);
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  EXPECT_THAT(outcome->repairs, ElementsAre("joined 1 vertex to the edges that they lie on"));
+  EXPECT_NEAR(outcome->solid.volume_mm3(), 8000, 0.01);
+}
+
+TEST(Repair, WhatCannotBeMendedIsWrappedAndToldOf) {
+  // Two small fins at one edge: four triangles there, and no two of them have material between them.
+  const TriangleMesh whole = ball(60, 60, 30);
+  TriangleMesh mesh = whole;
+  const auto t = mesh.triangles[1000];
+  const Eigen::Vector3d out = mesh.vertices[t[0]].normalized();
+  for (const double height : {1.0, 1.5}) {
+    mesh.triangles.push_back({t[0], t[1], static_cast<int>(mesh.vertices.size())});
+    mesh.vertices.push_back(mesh.vertices[t[0]] + height * out + Eigen::Vector3d(0, 0, 2 - height));
+  }
+  const auto outcome = mend(mesh);
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  ASSERT_THAT(outcome->repairs, Contains(AllOf(HasSubstr("as a last resort, since the edge from"),
+                                               HasSubstr("shared by 4 triangles"), HasSubstr("wrapped"))));
+  EXPECT_NEAR(outcome->solid.volume_mm3() / signed_volume(whole), 1, 0.02);
+  RepairOptions never;
+  never.max_wrap_volume_change_relative = 0;
+  RunContext context;
+  const auto refused = repair(mesh, never, context);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_THAT(refused.error().message, HasSubstr("shared by 4 triangles that bound no material"));
+  never.max_wrap_volume_change_relative = 1e-4;
+  const auto too_much = repair(mesh, never, context);
+  ASSERT_FALSE(too_much.ok());
+  EXPECT_THAT(too_much.error().message,
+              AllOf(HasSubstr("shared by 4"), HasSubstr("more than 0.01 % of change")));
+}
+
+TEST(Repair, AWrapHidesNoLargeOpening) {
+  TriangleMesh mesh = cube(20);
+  for (const double height : {25.0, 30.0}) {
+    mesh.triangles.push_back({1, 2, static_cast<int>(mesh.vertices.size())});
+    mesh.vertices.emplace_back(height, height, height);
+  }
+  EXPECT_THAT(refusal_of(mesh),
+              AllOf(HasSubstr("shared by 4 triangles"), HasSubstr("too large to be closed")));
 }
 
 TEST(Repair, AMoebiusStripIsRefusedByName) {
@@ -193,12 +264,29 @@ TEST(Repair, SheetsEncloseNothing) {
   EXPECT_THAT(refusal_of(merged(plane, turned_inside_out(plane))), HasSubstr("the surface is open"));
 }
 
-TEST(Repair, AFinIsRefusedByItsEdge) {
+TEST(Repair, AFinIsDroppedAndToldOf) {
   TriangleMesh mesh = cube(20);
   const int tip = static_cast<int>(mesh.vertices.size());
   mesh.vertices.emplace_back(30, 30, 30);
   mesh.triangles.push_back({1, 2, tip});
-  EXPECT_THAT(refusal_of(mesh), HasSubstr("shared by 3 triangles"));
+  const auto outcome = mend(mesh);
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  EXPECT_THAT(outcome->repairs,
+              ElementsAre("dropped 1 triangle of a fin without thickness that stood out of the body"));
+  EXPECT_EQ(outcome->solid.mesh().triangles, cube(20).triangles);
+}
+
+TEST(Repair, AnInnerWallDrawnOnceIsTakenOut) {
+  // A box of two chambers: the wall at x = 10 meets the four sides in edges of three triangles.
+  TriangleMesh mesh = merged(box({0, 0, 0}, {10, 20, 20}), box({10, 0, 0}, {25, 20, 20}));
+  std::erase_if(mesh.triangles, [&](const auto& t) {  // the second box leaves its own side there out
+    return t[0] >= 8 && mesh.vertices[t[0]].x() == 10 && mesh.vertices[t[1]].x() == 10 &&
+           mesh.vertices[t[2]].x() == 10;
+  });
+  const auto outcome = mend(mesh);
+  ASSERT_TRUE(outcome.ok()) << outcome.error().message;
+  EXPECT_THAT(outcome->repairs, Contains("dropped 2 triangles of walls without thickness within the body"));
+  EXPECT_NEAR(outcome->solid.volume_mm3(), 25 * 20 * 20, 0.01);
 }
 
 TEST(Repair, EmptyCollapsedAndBrokenMeshesAreRefused) {

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/solid/unite.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "worker/solid/exact_union.h"
+#include "worker/solid/half_edges.h"
+#include "worker/solid/level_set_union.h"
+#include "worker/solid/self_intersections.h"
+#include "worker/solid/shells.h"
+
+namespace skinframe {
+namespace {
+
+// Corefinement of more than this takes too long.
+constexpr std::size_t kMostExactBodies = 200, kMostExactTriangles = 1'000'000;
+
+TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<int>& triangles) {
+  TriangleMesh part;
+  part.vertices = mesh.vertices;
+  part.triangles.reserve(triangles.size());
+  for (const int t : triangles) part.triangles.push_back(mesh.triangles[t]);
+  drop_unused_vertices(part);
+  return part;
+}
+
+void append(TriangleMesh& mesh, const TriangleMesh& more) {
+  const int shift = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
+  for (const auto& [a, b, c] : more.triangles) mesh.triangles.push_back({a + shift, b + shift, c + shift});
+}
+
+// Shells that cross, by the numbers of the shells; a cavity goes with the body around it.
+class Clusters {
+ public:
+  Clusters(const TriangleMesh& mesh, std::vector<Shell> shells, const std::vector<std::pair<int, int>>& pairs)
+      : shells_(std::move(shells)),
+        sets_(shells_.size()),
+        self_pairs_(shells_.size(), 0),
+        crossed_(shells_.size(), 0) {
+    std::vector<int> shell_of(mesh.triangles.size(), 0);
+    for (std::size_t s = 0; s < shells_.size(); ++s) {
+      for (const int t : shells_[s].triangles) shell_of[t] = static_cast<int>(s);
+    }
+    for (const auto& [a, b] : pairs) {
+      const int s = shell_of[a], t = shell_of[b];
+      if (s == t) {
+        ++self_pairs_[s];
+      } else {
+        sets_.join(s, t);
+        crossed_[s] = crossed_[t] = 1;
+      }
+    }
+    for (std::size_t s = 0; s < shells_.size(); ++s) {
+      if (shells_[s].volume >= 0) continue;
+      int around = -1;
+      for (std::size_t o = 0; o < shells_.size(); ++o) {
+        if (shells_[o].volume <= 0 || !contains(mesh, shells_[o], shells_[s])) continue;
+        if (around < 0 || shells_[o].volume < shells_[around].volume) around = static_cast<int>(o);
+      }
+      if (around >= 0) sets_.join(static_cast<int>(s), around);
+    }
+  }
+
+  const std::vector<Shell>& shells() const { return shells_; }
+  std::size_t self_pairs(int shell) const { return self_pairs_[shell]; }
+
+  struct Cluster {
+    std::vector<int> shells;
+    bool crosses = false;  // two of its shells cross
+    std::size_t self_pairs = 0;
+  };
+  std::vector<Cluster> list() {
+    std::map<int, Cluster> by_root;
+    for (int s = 0; s < static_cast<int>(shells_.size()); ++s) {
+      Cluster& cluster = by_root[sets_.find(s)];
+      cluster.shells.push_back(s);
+      cluster.crosses = cluster.crosses || crossed_[s];
+      cluster.self_pairs += self_pairs_[s];
+    }
+    std::vector<Cluster> clusters;
+    for (auto& [root, cluster] : by_root) clusters.push_back(std::move(cluster));
+    return clusters;
+  }
+
+ private:
+  std::vector<Shell> shells_;
+  DisjointSets sets_;
+  std::vector<std::size_t> self_pairs_;
+  std::vector<char> crossed_;
+};
+
+// The bodies of a cluster with the cavities in them; a cavity that lies in none cuts into all.
+std::vector<LevelSetBody> bodies_of(const TriangleMesh& mesh, const std::vector<Shell>& shells,
+                                    const std::vector<int>& cluster) {
+  std::vector<LevelSetBody> bodies;
+  std::vector<int> outer;
+  for (const int s : cluster) {
+    if (shells[s].volume < 0) continue;
+    outer.push_back(s);
+    bodies.push_back({part_of(mesh, shells[s].triangles), {}});
+  }
+  for (const int s : cluster) {
+    if (shells[s].volume >= 0) continue;
+    int around = -1;
+    for (std::size_t b = 0; b < outer.size(); ++b) {
+      if (!contains(mesh, shells[outer[b]], shells[s])) continue;
+      if (around < 0 || shells[outer[b]].volume < shells[outer[around]].volume) around = static_cast<int>(b);
+    }
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      if (around < 0 || static_cast<int>(b) == around)
+        bodies[b].cavities.push_back(part_of(mesh, shells[s].triangles));
+    }
+  }
+  return bodies;
+}
+
+double volume_of(const std::vector<Shell>& shells, const std::vector<int>& cluster) {
+  double volume = 0;
+  for (const int s : cluster) volume += shells[s].volume;
+  return volume;
+}
+
+struct United {
+  TriangleMesh mesh;
+  double voxel = 0;  // 0: exact
+};
+
+United unite(const TriangleMesh& mesh, const std::vector<Shell>& shells, const Clusters::Cluster& cluster,
+             bool exact, const RunContext& context) {
+  const std::vector<LevelSetBody> bodies = bodies_of(mesh, shells, cluster.shells);
+  std::size_t triangles = 0;
+  double largest = 0, sum = 0, area = 0;
+  BoundingBox box = shells[cluster.shells.front()].box;
+  std::vector<TriangleMesh> meshes;
+  for (const LevelSetBody& body : bodies) {
+    TriangleMesh whole = body.outer;
+    for (const TriangleMesh& cavity : body.cavities) append(whole, cavity);
+    triangles += whole.triangles.size();
+    area += surface_area(whole);
+    largest = std::max(largest, signed_volume(whole));
+    sum += signed_volume(whole);
+    const BoundingBox own = bounding_box(whole);
+    box.min = box.min.cwiseMin(own.min);
+    box.max = box.max.cwiseMax(own.max);
+    meshes.push_back(std::move(whole));
+  }
+  if (exact && meshes.size() > 1 && meshes.size() <= kMostExactBodies && triangles <= kMostExactTriangles) {
+    if (auto united = unite_exactly(meshes, context)) {
+      const double volume = signed_volume(*united);
+      // Between its largest body and all of them: what lies outside was not a union.
+      constexpr double kRounding = 1e-6;
+      if (volume >= largest * (1 - kRounding) && volume <= sum * (1 + kRounding))
+        return {std::move(*united), 0};
+    }
+  }
+  const double voxel = level_set_voxel(area, box.extent().norm());
+  return {level_set_union(bodies, voxel), voxel};
+}
+
+std::string self_crossing(std::size_t pairs) {
+  return fmt::format("{} of triangles cut each other",
+                     pairs == 1 ? "1 pair" : fmt::format("{} pairs", pairs));
+}
+
+}  // namespace
+
+Result<Union> unite_overlaps(const TriangleMesh& mesh, const UniteOptions& options,
+                             const RunContext& context) {
+  Union outcome;
+  const auto pairs = find_self_intersections(mesh);
+  if (pairs.empty()) return outcome;
+  Clusters clusters(mesh, find_shells(mesh), pairs);
+  std::size_t accepted_pairs = 0;
+  double accepted_overlap = 0;
+  for (const Clusters::Cluster& cluster : clusters.list()) {
+    if (context.cancelled()) return cancelled_error();
+    const double before = volume_of(clusters.shells(), cluster.shells);
+    std::vector<int> triangles;
+    for (const int s : cluster.shells)
+      triangles.insert(triangles.end(), clusters.shells()[s].triangles.begin(),
+                       clusters.shells()[s].triangles.end());
+    const auto keep = [&] { append(outcome.mesh, part_of(mesh, triangles)); };
+    if (cluster.crosses) {
+      const United united = unite(mesh, clusters.shells(), cluster, options.exact, context);
+      if (context.cancelled()) return cancelled_error();
+      outcome.repairs.push_back(fmt::format(
+          "united {} shells that overlap{}: their volumes add up to {:.6g} mm3 and enclose {:.6g} mm3",
+          cluster.shells.size(),
+          united.voxel > 0
+              ? fmt::format(" in a level set of {:.2g} mm, which rounds edges by half of it", united.voxel)
+              : "",
+          before, signed_volume(united.mesh)));
+      append(outcome.mesh, united.mesh);
+      outcome.changed = true;
+      continue;
+    }
+    if (cluster.self_pairs == 0) {
+      keep();
+      continue;
+    }
+    // Slight crossings are left alone: the surface is the user's own. What they change is measured.
+    double sum = 0, shut_off = 0;
+    for (const int s : cluster.shells) {
+      if (clusters.self_pairs(s) == 0) continue;
+      const TriangleMesh shell = part_of(mesh, clusters.shells()[s].triangles);
+      const double voxel = level_set_voxel(surface_area(shell), bounding_box(shell).extent().norm());
+      sum += std::abs(clusters.shells()[s].volume);
+      shut_off += shut_off_volume(shell, voxel);
+    }
+    const double overlap = shut_off > 0 ? std::abs(sum - shut_off) / shut_off : 0;
+    if (overlap <= options.max_self_overlap_relative) {
+      accepted_pairs += cluster.self_pairs;
+      accepted_overlap = std::max(accepted_overlap, overlap);
+      keep();
+      continue;
+    }
+    const United united = unite(mesh, clusters.shells(), cluster, false, context);
+    outcome.repairs.push_back(fmt::format(
+        "united a surface with itself ({}) in a level set of {:.2g} mm, which rounds edges by half "
+        "of it: its triangles add up to {:.6g} mm3 and enclose {:.6g} mm3",
+        self_crossing(cluster.self_pairs), united.voxel, before, signed_volume(united.mesh)));
+    append(outcome.mesh, united.mesh);
+    outcome.changed = true;
+  }
+  if (accepted_pairs > 0) {
+    outcome.warnings.push_back(
+        fmt::format("{}; accepted as it is, since the volume that is enclosed twice or inside out is {} %",
+                    self_crossing(accepted_pairs),
+                    accepted_overlap < 1e-3 ? "below 0.1" : fmt::format("{:.1f}", 100 * accepted_overlap)));
+  }
+  return outcome;
+}
+
+}  // namespace skinframe
