@@ -30,6 +30,7 @@ struct Arguments {
   std::vector<std::string> methods{"ipopt", "size", "tight", "paper", "greedy", "uniform", "mma"};
   MethodLimits limits{300, 1};
   std::string json_file;
+  std::string keep;              // folder for the problem files
   std::optional<double> equal;   // SizeOpt's volume over Ipopt's, at most this far from one
   std::vector<std::string> row;  // method and problem file, in the child
 };
@@ -101,6 +102,12 @@ class Bench {
     const LoadedProblem loaded = with_loads(named.problem, *load_kind(load), !named.fixed_load);
     const auto file = scratch_.file("problem.json");
     std::ofstream(file) << to_json(loaded.problem, {}, {});
+    if (!arguments_.keep.empty()) {
+      const auto kept = fmt::format("{}-{}-{}.json", named.name, loaded.problem.frame.nodes_mm.size(), load);
+      std::filesystem::create_directories(arguments_.keep);
+      std::filesystem::copy_file(file, std::filesystem::path(arguments_.keep) / kept,
+                                 std::filesystem::copy_options::overwrite_existing);
+    }
     std::optional<Row> ipopt;
     std::string stages;
     for (const std::string& method : arguments_.methods) {
@@ -207,6 +214,8 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--models", arguments.frames.models, "Folder of the corpus (default: SKINFRAME_MODELS)");
   app.add_option("--json", arguments.json_file, "All rows as JSON into this file");
+  app.add_option("--keep", arguments.keep,
+                 "Leave the problem files in this folder, for skinframe solve-frame");
   app.add_option("--expect-equal", arguments.equal,
                  "Exit code 1 unless SizeOpt's volume is Ipopt's to this, relative");
   app.add_option("--row", arguments.row, "METHOD FILE: one row as JSON; for this program's own use")

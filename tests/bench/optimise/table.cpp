@@ -17,13 +17,15 @@ std::string ratio(const std::optional<double>& a, const std::optional<double>& b
 }
 
 constexpr const char* kLine =
-    "{:<22} {:<11} {:<8} {:>9} {:>9} {:>7} {:>7} {:>5} {:>5} {:>11} {:>9} {:>7} {:>7} {:>8} {:>6}  {}\n";
+    "{:<22} {:<11} {:<8} {:>9} {:>9} {:>7} {:>7} {:>5} {:>5} {:>11} {:>9} {:>7} {:>7} {:>8} {:>6} {:>6}  "
+    "{}\n";
 
 }  // namespace
 
 std::string table_head() {
   return fmt::format(fmt::runtime(kLine), "frame", "load", "method", "seconds", "CPU s", "t/Ipo", "CPU/Ipo",
-                     "iter", "fact", "volume mm3", "V/Ipopt", "gap", "struts", "demand", "MB", "ending");
+                     "iter", "fact", "volume mm3", "V/Ipopt", "gap", "struts", "demand", "KKT", "MB",
+                     "ending");
 }
 
 std::string table_line(const Row& row, const Row* ipopt) {
@@ -37,7 +39,8 @@ std::string table_line(const Row& row, const Row* ipopt) {
                      cell(row.volume_mm3, "{:.1f}"),
                      ipopt ? ratio(row.volume_mm3, ipopt->volume_mm3, "{:.7f}") : "-",
                      gap ? fmt::format("{:.2f} %", 100 * *gap) : "-", cell(row.struts_left, "{}"),
-                     cell(row.worst_ratio, "{:.5f}"), cell(row.peak_mb, "{:.0f}"), row.status);
+                     cell(row.worst_ratio, "{:.5f}"), cell(row.kkt_error, "{:.0e}"),
+                     cell(row.peak_mb, "{:.0f}"), row.status);
 }
 
 std::string stage_lines(const Row& row) {
