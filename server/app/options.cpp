@@ -63,6 +63,10 @@ absl::Status ServerOptions::validate() const {
     return absl::InvalidArgumentError(
         fmt::format("--queue-limit is {}, must be within 1 .. 1000000", queue_limit));
   }
+  if (keep_jobs_days < 0 || keep_jobs_days > 3650) {
+    return absl::InvalidArgumentError(
+        fmt::format("--keep-jobs-days is {}, must be within 0 .. 3650", keep_jobs_days));
+  }
   if (auto status = policy.validate(); !status.ok())
     return absl::InvalidArgumentError("--" + std::string(status.message()));
   if (auto status = check_listen_address(listen); !status.ok()) return status;
@@ -103,6 +107,9 @@ std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* c
   app.add_option("--max-attempts", options.policy.max_attempts, "lost attempts after which a job FAILED")
       ->capture_default_str();
   app.add_option("--queue-limit", options.queue_limit, "queued jobs beyond which submission is refused")
+      ->capture_default_str();
+  app.add_option("--keep-jobs-days", options.keep_jobs_days,
+                 "an ended job is forgotten after so many days, its files a day later; 0: never")
       ->capture_default_str();
   app.add_option("--port-file", options.port_file, "written with host:port once the server listens");
   try {

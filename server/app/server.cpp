@@ -24,6 +24,8 @@
 #include "server/leases/duty_runner.h"
 #include "server/leases/lease_reaper.h"
 #include "server/replicas/progress_follower.h"
+#include "server/retention/artifact_cleaner.h"
+#include "server/retention/job_retention.h"
 #include "server/store/postgres_store.h"
 #include "server/store/sqlite_store.h"
 
@@ -34,6 +36,10 @@ constexpr int kExecutorThreads = 32;  // as many writes as one commit can hold
 constexpr std::size_t kMostWatchers = 10'000;
 constexpr Milliseconds kDutyPause{100};
 constexpr Milliseconds kFollowEvery{500};  // progress that another server wrote is seen so late at most
+constexpr Milliseconds kDay{24 * 3'600'000};
+constexpr Milliseconds kRetentionEvery{60'000};
+constexpr Milliseconds kUnused = kDay;  // an upload waits so long for its submission
+constexpr Milliseconds kCleanEvery{3'600'000};
 constexpr int kDatabaseSessions = 16;
 constexpr std::chrono::seconds kStopPatience{1};  // for calls under way; uploads resume, the rest takes less
 constexpr int kLargestMessageBytes = 4 << 20;
@@ -90,6 +96,8 @@ struct Server::Rooms {
   std::optional<LeaseReaper> reaper;
   std::optional<DeadlineWatch> deadlines;
   std::optional<ProgressFollower> follower;  // where other servers share the store
+  std::optional<JobRetention> retention;
+  std::optional<ArtifactCleaner> cleaner;
   std::optional<DutyRunner> duties;
   std::optional<JobService> jobs;
   std::optional<ArtifactService> files;
@@ -126,6 +134,9 @@ absl::Status Server::Rooms::open(const ServerOptions& options, const Clock& cloc
   workers.emplace(parts);
   std::vector<Duty*> all{&*reaper, &*deadlines, &*desk};
   if (options.store_is_postgres()) all.push_back(&follower.emplace(*store, hub, kFollowEvery));
+  if (options.keep_jobs_days > 0)
+    all.push_back(&retention.emplace(*store, options.keep_jobs_days * kDay, kRetentionEvery));
+  all.push_back(&cleaner.emplace(*store, *artifacts, kUnused, kCleanEvery));
   duties.emplace(clock, all, kDutyPause);
   return absl::OkStatus();
 }

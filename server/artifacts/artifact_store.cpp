@@ -58,6 +58,7 @@ absl::StatusOr<ArtifactFacts> ArtifactStore::stat(std::string_view sha256) const
   if (const std::int64_t size = size_or_absent(complete_path(sha256)); size >= 0) {
     facts.complete = true;
     facts.size_bytes = size;
+    if (absl::Status status = touch(complete_path(sha256)); !status.ok()) return status;
   } else {
     facts.resume_offset = std::max<std::int64_t>(0, size_or_absent(partial_path(sha256)));
   }
@@ -79,7 +80,10 @@ absl::StatusOr<std::unique_ptr<Upload>> ArtifactStore::upload(const std::string&
   }
   std::unique_ptr<Upload> upload(new Upload(*this, sha256, size_bytes));  // releases the name when it goes
   if (const std::int64_t size = size_or_absent(complete_path(sha256)); size >= 0) {
-    if (size == size_bytes) return nullptr;
+    if (size == size_bytes) {
+      if (absl::Status status = touch(complete_path(sha256)); !status.ok()) return status;
+      return nullptr;
+    }
     return absl::InvalidArgumentError(
         fmt::format("size_bytes is {}, but the artifact of that name has {} bytes", size_bytes, size));
   }

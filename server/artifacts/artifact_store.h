@@ -6,10 +6,11 @@
 //
 // Guarantees: a name under complete/ appears only by a rename after its content was hashed and synced, so
 // what is there after a power cut is whole. One upload of a content at a time, also among servers that share
-// the folder (by a lock on the partial file: the file system must have working locks). A partial file that a power
-// cut damaged costs a repetition (its hash is wrong, nothing is kept), never a wrong artifact.
+// the folder (by a lock on the partial file: the file system must have working locks). A partial file that a
+// power cut damaged costs a repetition (its hash is wrong, nothing is kept), never a wrong artifact.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -17,6 +18,7 @@
 #include <string>
 #include <string_view>
 #include <unordered_set>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "server/artifacts/file.h"
@@ -41,7 +43,7 @@ class ArtifactStore {
   static absl::StatusOr<std::unique_ptr<ArtifactStore>> open(const std::filesystem::path& folder,
                                                              const ArtifactLimits& limits);
 
-  // INVALID_ARGUMENT: not a SHA-256.
+  // Asking for a complete artifact counts as using it: see unused_since. INVALID_ARGUMENT: not a SHA-256.
   absl::StatusOr<ArtifactFacts> stat(std::string_view sha256) const;
 
   // Begins or continues. Null: the artifact is complete already. INVALID_ARGUMENT: name or size. ABORTED:
@@ -51,6 +53,16 @@ class ArtifactStore {
 
   // NOT_FOUND: not complete.
   absl::StatusOr<File> read(std::string_view sha256) const;
+
+  // Complete artifacts that were neither written nor asked for since then.
+  absl::StatusOr<std::vector<std::string>> unused_since(std::chrono::system_clock::time_point time) const;
+
+  // Removes the artifact unless it was used since then: it is taken aside first and looked at again, so that
+  // one that somebody asks for at this moment is put back. False: it was used, or is gone.
+  absl::StatusOr<bool> remove_unused(const std::string& sha256, std::chrono::system_clock::time_point since);
+
+  // Removes kept parts that nobody writes and nobody has written since then; how many.
+  absl::StatusOr<int> remove_abandoned_parts(std::chrono::system_clock::time_point since);
 
   const ArtifactLimits& limits() const { return limits_; }
 

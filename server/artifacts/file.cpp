@@ -108,6 +108,20 @@ absl::Status File::sync() {
   return absl::OkStatus();
 }
 
+absl::StatusOr<std::chrono::system_clock::time_point> used_at(const std::filesystem::path& file) {
+  struct stat facts {};
+  if (::stat(file.c_str(), &facts) != 0) return errno_status(errno, file, "look at");
+  const auto since_1970 =
+      std::chrono::seconds(facts.st_mtim.tv_sec) + std::chrono::nanoseconds(facts.st_mtim.tv_nsec);
+  return std::chrono::system_clock::time_point(
+      std::chrono::duration_cast<std::chrono::system_clock::duration>(since_1970));
+}
+
+absl::Status touch(const std::filesystem::path& file) {
+  if (::utimensat(AT_FDCWD, file.c_str(), nullptr, 0) != 0) return errno_status(errno, file, "touch");
+  return absl::OkStatus();
+}
+
 absl::Status sync_folder(const std::filesystem::path& folder) {
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (descriptor < 0) return errno_status(errno, folder, "open");

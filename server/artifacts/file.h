@@ -2,6 +2,7 @@
 // A file descriptor as a value, with errors as a status that names the file. What artifacts need of POSIX.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -28,8 +29,8 @@ class File {
       const std::filesystem::path& file);  // made when absent, kept when there
 
   absl::StatusOr<std::int64_t> size() const;
-  // For this descriptor alone among all processes, until it is closed. ABORTED: another one has it, or the name
-  // has meanwhile become another file's.
+  // For this descriptor alone among all processes, until it is closed. ABORTED: another one has it, or the
+  // name has meanwhile become another file's.
   absl::Status lock();
   absl::Status truncate(std::int64_t size);
   absl::Status write_at(std::int64_t offset, std::string_view bytes);  // all of them
@@ -43,6 +44,11 @@ class File {
   int descriptor_ = -1;
   std::filesystem::path path_;
 };
+
+// The time of the last write or touch; NOT_FOUND.
+absl::StatusOr<std::chrono::system_clock::time_point> used_at(const std::filesystem::path& file);
+// Sets that time to now. NOT_FOUND.
+absl::Status touch(const std::filesystem::path& file);
 
 // Makes the folder's own entries durable: after a rename into it.
 absl::Status sync_folder(const std::filesystem::path& folder);

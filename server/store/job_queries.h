@@ -150,7 +150,10 @@ inline constexpr char kExpiredLeases[] =
 inline constexpr char kPassedDeadlines[] =
     "SELECT job_id FROM jobs WHERE state = 1 AND deadline_ms <= ? ORDER BY deadline_ms LIMIT ?";
 
-// The ids that one of the two statements above finds.
+inline constexpr char kEndedJobs[] =
+    "SELECT job_id FROM jobs WHERE state > 2 AND end_ms <= ? ORDER BY end_ms LIMIT ?";
+
+// The ids that one of the statements above finds.
 template <class Database>
 absl::StatusOr<std::vector<std::string>> overdue_jobs(Database& database, const char* sql, Time now,
                                                       int limit) {

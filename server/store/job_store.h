@@ -98,6 +98,9 @@ class JobStore {
   virtual absl::StatusOr<std::vector<std::string>> expired_leases(Time now, int limit) = 0;
   virtual absl::StatusOr<std::vector<std::string>> passed_deadlines(Time now, int limit) = 0;
 
+  // Ids of jobs that ended at or before a time, those that ended first first.
+  virtual absl::StatusOr<std::vector<std::string>> ended_jobs(Time until, int limit) = 0;
+
   // The sequence number of the newest event of each of these jobs; unknown ones are left out.
   virtual absl::StatusOr<std::map<std::string, std::int64_t>> last_sequences(
       const std::vector<std::string>& job_ids) = 0;

@@ -59,7 +59,11 @@ CREATE TABLE events (
 CREATE SEQUENCE fencing_tokens;
 )sql";
 
-constexpr std::array kMigrations = {Migration{1, "jobs and events", kJobsAndEvents}};
+// For the retention of ended jobs.
+constexpr char kEndedIndex[] = "CREATE INDEX jobs_ended ON jobs (end_ms) WHERE state > 2";
+
+constexpr std::array kMigrations = {Migration{1, "jobs and events", kJobsAndEvents},
+                                    Migration{2, "index of ended jobs", kEndedIndex}};
 
 }  // namespace
 

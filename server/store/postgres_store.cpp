@@ -127,6 +127,11 @@ class PostgresStore final : public JobStore {
         [&](PostgresSession& session) { return overdue_jobs(session, kPassedDeadlines, now, limit); });
   }
 
+  absl::StatusOr<std::vector<std::string>> ended_jobs(Time until, int limit) override {
+    return pool_.with(
+        [&](PostgresSession& session) { return overdue_jobs(session, kEndedJobs, until, limit); });
+  }
+
   absl::StatusOr<std::map<std::string, std::int64_t>> last_sequences(
       const std::vector<std::string>& job_ids) override {
     return pool_.with([&](PostgresSession& session) { return read_last_sequences(session, job_ids); });

@@ -125,6 +125,10 @@ class SqliteStore final : public JobStore {
     return overdue(kPassedDeadlines, now, limit);
   }
 
+  absl::StatusOr<std::vector<std::string>> ended_jobs(Time until, int limit) override {
+    return overdue(kEndedJobs, until, limit);
+  }
+
   absl::StatusOr<std::map<std::string, std::int64_t>> last_sequences(
       const std::vector<std::string>& job_ids) override {
     return readers_.with([&](SqliteDatabase& database) { return read_last_sequences(database, job_ids); });

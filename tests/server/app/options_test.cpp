@@ -52,6 +52,7 @@ TEST(Options, TheNetworkNeedsTlsOrAnExplicitFlag) {
 
 TEST(Options, WhatIsWrongIsNamed) {
   expect_refused({}, "--data");
+  expect_refused({"--data", "d", "--keep-jobs-days", "-1"}, "--keep-jobs-days");
   expect_refused({"--data", "d", "--store", "mysql://farm"}, "--store");
   expect_refused({"--data", "d", "--store", "postgresql://farm"}, "--artifacts");
   expect_refused({"--data", "d", "--store", "oracle"}, "oracle");

@@ -305,6 +305,18 @@ TEST_P(JobStoreConformance, FindsExpiredLeasesAndPassedDeadlinesOldestFirst) {
   EXPECT_EQ(*store_->expired_leases(kNoon + kPolicy.lease, 10), (std::vector<std::string>{"b"}));
 }
 
+TEST_P(JobStoreConformance, FindsEndedJobsByTheTimeTheyEnded) {
+  for (const char* id : {"a", "b", "queued"}) create(id);
+  ASSERT_TRUE(store_->modify("b", [](const JobRecord& job) { return decide_cancel(job, kNoon); }).ok());
+  ASSERT_TRUE(
+      store_->modify("a", [](const JobRecord& job) { return decide_cancel(job, kNoon + Milliseconds(5)); })
+          .ok());
+  EXPECT_TRUE(store_->ended_jobs(kNoon - Milliseconds(1), 10)->empty());
+  EXPECT_EQ(*store_->ended_jobs(kNoon, 10), (std::vector<std::string>{"b"}));
+  EXPECT_EQ(*store_->ended_jobs(kNoon + Milliseconds(5), 10), (std::vector<std::string>{"b", "a"}));
+  EXPECT_EQ(*store_->ended_jobs(kNoon + Milliseconds(5), 1), (std::vector<std::string>{"b"}));
+}
+
 TEST_P(JobStoreConformance, TellsTheNewestSequenceOfManyJobsAtOnce) {
   std::vector<std::string> ids = {"none"};
   for (int i = 0; i < 3; ++i) {

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Removes artifacts that no job refers to, and abandoned parts of uploads, when nobody has used them for a
+// while.
+//
+// Why nothing that is referred to can go: candidates are those unused since `unused` ago, found first; then
+// all jobs are read, and what they refer to is taken out. A job that is submitted meanwhile asks for its mesh
+// before it is made, and a worker's result is asked for before it is accepted: that counts as use, and an
+// artifact's last use is looked at once more when it goes (ArtifactStore::remove_unused).
+#pragma once
+
+#include <set>
+#include <string>
+
+#include "server/artifacts/artifact_store.h"
+#include "server/leases/duty.h"
+#include "server/store/job_store.h"
+
+namespace skinframe::server {
+
+// All artifacts that the job refers to: its input and its results.
+std::set<std::string> artifacts_of(const v1::Job& job);
+
+class ArtifactCleaner final : public Duty {
+ public:
+  // unused: longer than any client takes from its upload to its submission.
+  ArtifactCleaner(JobStore& store, ArtifactStore& artifacts, Milliseconds unused, Milliseconds every)
+      : store_(store), artifacts_(artifacts), unused_(unused), every_(every) {}
+  std::string_view name() const override { return "artifact cleaner"; }
+  absl::Status run_once(Time now) override;
+
+ private:
+  absl::Status keep_referred(std::set<std::string>& candidates);
+
+  JobStore& store_;
+  ArtifactStore& artifacts_;
+  const Milliseconds unused_;
+  const Milliseconds every_;
+  Time looked_{};
+};
+
+}  // namespace skinframe::server
