@@ -20,6 +20,7 @@ Verdict judge(const ExportedPrinter& result) {
   if (!result.merged) {
     claim_frame(result, nullptr, &verdict);
     claim_mechanics(result, &verdict);
+    claim_bounds(result, &verdict);
     return verdict;
   }
   TriangleMesh outer_mesh, cavity;
@@ -38,6 +39,7 @@ Verdict judge(const ExportedPrinter& result) {
   claim_frame(result, &outer, &verdict);
   claim_printed_struts(result, cavity, outer, &verdict);
   claim_mechanics(result, &verdict);
+  claim_bounds(result, &verdict);
   claim_balance(result, outer_mesh, &verdict);
   return verdict;
 }
@@ -50,6 +52,7 @@ Verdict judge_solution(const ExportedPrinter& solution) {
   }
   claim_solution(solution, &verdict);
   claim_mechanics(solution, &verdict);
+  claim_bounds(solution, &verdict);
   return verdict;
 }
 

@@ -36,6 +36,13 @@ void claim_solution(const ExportedPrinter& solution, Verdict* verdict);
 // pin-jointed one, as the file says.
 void claim_mechanics(const ExportedPrinter& result, Verdict* verdict);
 
+// That no radii within their bounds keep the limits, where the report says that this is proven; and the lower
+// bounds on the volume: below the volumes that they are bounds of, the gaps as reported, and for a frame
+// problem proven. Each proof is verified by arithmetic alone, without solving anything: virtual displacements
+// y of a load case give 2 F^T y - y^T K y <= F^T D <= what the limits allow, linear in the areas, whose sum
+// with multipliers >= 0 is least strut by strut.
+void claim_bounds(const ExportedPrinter& result, Verdict* verdict);
+
 // Of skin and struts together, each strut counted in full.
 Eigen::Vector3d nominal_centre_of_gravity_mm(const ExportedFrame& frame);
 

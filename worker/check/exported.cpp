@@ -46,7 +46,10 @@ int node_index(const json& value, std::size_t count, const std::string& place) {
   return static_cast<int>(index);
 }
 
-ExportedFrame parse_frame(const json& file) {
+// A problem file has no radii yet.
+enum class Radii { kGiven, kNone };
+
+ExportedFrame parse_frame(const json& file, Radii radii = Radii::kGiven) {
   ExportedFrame frame;
   const json& material = file.at("material");
   frame.tensile_modulus_mpa = material.at("tensile_modulus_mpa").get<double>();
@@ -69,7 +72,7 @@ ExportedFrame parse_frame(const json& file) {
     strut.a = node_index(item.at("a"), n, place + ".a");
     strut.b = node_index(item.at("b"), n, place + ".b");
     strut.skin = item.at("skin").get<bool>();
-    strut.radius_mm = item.at("radius_mm").get<double>();
+    if (radii == Radii::kGiven) strut.radius_mm = item.at("radius_mm").get<double>();
     strut.min_radius_mm = item.at("min_radius_mm").get<double>();
     strut.max_radius_mm = item.at("max_radius_mm").get<double>();
     frame.struts.push_back(strut);
@@ -113,6 +116,43 @@ ExportedFrame parse_frame(const json& file) {
   return frame;
 }
 
+std::optional<ExportedProof> parse_proof(const json& file, const char* key, const ExportedFrame& frame) {
+  if (!file.contains(key) || file.at(key).is_null()) return std::nullopt;
+  const json& item = file.at(key);
+  ExportedProof proof;
+  proof.volume_weight = item.at("volume_weight").get<double>();
+  proof.feasibility_tolerance = item.at("feasibility_tolerance").get<double>();
+  proof.value = item.at("value").get<double>();
+  proof.removable_may_vanish = item.at("radii").get<std::string>() == "removable_may_vanish";
+  proof.balance_multipliers = item.at("balance_multipliers").get<std::vector<double>>();
+  const std::size_t planes = proof.balance_multipliers.size();
+  if (planes != 0 && planes != frame.balance_half_planes.size())
+    throw std::out_of_range(fmt::format("{}: {} balance multipliers for {} half planes", key, planes,
+                                        frame.balance_half_planes.size()));
+  for (const json& entry : item.at("fields")) {
+    ExportedField field;
+    const auto load_case = entry.at("load_case").get<long long>();
+    if (load_case < 0 || static_cast<std::size_t>(load_case) >= frame.load_cases.size())
+      throw std::out_of_range(fmt::format("{}: {} is not a load case", key, load_case));
+    field.load_case = static_cast<int>(load_case);
+    field.displacement_multiplier = entry.at("displacement_multiplier").get<double>();
+    field.stress_multiplier = entry.at("stress_multiplier").get<double>();
+    for (const json& d : entry.at("displacements_mm")) field.displacement_mm.push_back(vector3(d));
+    if (field.displacement_mm.size() != frame.nodes_mm.size())
+      throw std::out_of_range(fmt::format("{}: {} displacements for {} nodes", key,
+                                          field.displacement_mm.size(), frame.nodes_mm.size()));
+    proof.fields.push_back(std::move(field));
+  }
+  return proof;
+}
+
+void parse_bounds(const json& item, ExportedPrinter* out) {
+  out->lower_bound_mm3 = optional_number(item, "lower_bound_mm3");
+  out->gap = optional_number(item, "gap");
+  out->relaxed_lower_bound_mm3 = optional_number(item, "relaxed_lower_bound_mm3");
+  out->relaxed_gap = optional_number(item, "relaxed_gap");
+}
+
 ExportedPrinter parse_printer(const json& item) {
   ExportedPrinter out;
   out.printer = item.at("printer").get<std::string>();
@@ -140,7 +180,8 @@ ExportedPrinter parse_printer(const json& item) {
   out.balance = item.at("balance").get<std::string>();
   out.violated_constraint = item.value("violated_constraint", "");
   out.balance_margin_mm = optional_number(item, "balance_margin_mm");
-  out.lower_bound_mm3 = optional_number(item, "lower_bound_mm3");
+  parse_bounds(item, &out);
+  out.infeasibility_proven = item.value("infeasibility_proven", false);
   out.final_nodes = item.at("counts").at("geometry").at("nodes").get<int>();
   out.final_struts = item.at("counts").at("geometry").at("struts").get<int>();
   if (!out.infeasible()) {
@@ -166,7 +207,8 @@ ExportedPrinter parse_solution(const json& item) {
   figures.geometry_volume_mm3 = volumes.at("geometry").get<double>();
   figures.final_nodes = item.at("counts").at("geometry").at("nodes").get<int>();
   figures.final_struts = item.at("counts").at("geometry").at("struts").get<int>();
-  figures.lower_bound_mm3 = optional_number(item, "lower_bound_mm3");
+  parse_bounds(item, &figures);
+  figures.infeasibility_proven = item.contains("certificate") && !item.at("certificate").is_null();
   const json& evaluation = item.at("evaluation");
   figures.frame_volume_mm3 = evaluation.at("frame_volume_mm3").get<double>();
   figures.max_displacement_mm = optional_number(evaluation, "max_displacement_mm").value_or(0.0);
@@ -209,6 +251,12 @@ Result<Exported> read_exported(const std::filesystem::path& directory, RunContex
       auto frame = read_json(reading);
       if (!frame) return frame.error();
       solution.frame = parse_frame(*frame);
+      solution.certificate = parse_proof(*frame, "certificate", solution.frame);
+      if (frame->contains("given")) {
+        solution.given = parse_frame(frame->at("given"), Radii::kNone);
+        solution.bound_proof = parse_proof(*frame, "lower_bound_proof", *solution.given);
+        solution.relaxed_bound_proof = parse_proof(*frame, "relaxed_lower_bound_proof", *solution.given);
+      }
       return Exported{{}, std::move(solution)};
     }
     for (const json& item : report->at("printers")) {
@@ -223,6 +271,7 @@ Result<Exported> read_exported(const std::filesystem::path& directory, RunContex
         auto frame = read_json(reading);
         if (!frame) return frame.error();
         printer.frame = parse_frame(*frame);
+        printer.certificate = parse_proof(*frame, "certificate", printer.frame);
       }
       if (!printer.infeasible()) {
         auto merged = read_mesh(folder / "skin-frame.stl", ReadLimits{}, context);

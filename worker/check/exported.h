@@ -45,6 +45,19 @@ struct ExportedFrame {
   std::vector<std::pair<Eigen::Vector2d, double>> balance_half_planes;
 };
 
+// A proof about all radii within their bounds (see claims.h), in the file's own terms.
+struct ExportedField {
+  int load_case = 0;
+  double displacement_multiplier = 0, stress_multiplier = 0;
+  std::vector<Eigen::Vector3d> displacement_mm;  // one a node
+};
+struct ExportedProof {
+  double volume_weight = 0, feasibility_tolerance = 0, value = 0;
+  bool removable_may_vanish = false;
+  std::vector<ExportedField> fields;
+  std::vector<double> balance_multipliers;  // one a half plane, or empty
+};
+
 struct ExportedPrinter {
   std::string printer, material;
   std::string termination;  // "OPTIMAL", "INFEASIBLE", "SOLID", ...
@@ -53,6 +66,12 @@ struct ExportedPrinter {
   double size_volume_mm3 = 0, topology_volume_mm3 = 0, geometry_volume_mm3 = 0;
   double max_displacement_mm = 0, max_axial_ratio = 0, max_shear_ratio = 0, min_radius_mm = 0;
   std::optional<double> balance_margin_mm, lower_bound_mm3, best_reachable_displacement_mm;
+  std::optional<double> gap, relaxed_lower_bound_mm3, relaxed_gap;
+  bool infeasibility_proven = false;         // as the report says
+  std::optional<ExportedProof> certificate;  // of `frame`
+  // Of a frame problem: what was given, and what proves the bounds for it.
+  std::optional<ExportedFrame> given;
+  std::optional<ExportedProof> bound_proof, relaxed_bound_proof;
   std::string balance, violated_constraint;
   int final_nodes = 0, final_struts = 0;
   // profile

@@ -130,10 +130,6 @@ void claim_volumes(const ExportedPrinter& result, Verdict* verdict) {
            std::abs(result.geometry_volume_mm3 - result.frame_volume_mm3) <= 1e-6 * result.frame_volume_mm3,
        fmt::format("size {:.1f}, topology {:.1f}, geometry {:.1f} mm3", result.size_volume_mm3,
                    result.topology_volume_mm3, result.geometry_volume_mm3)});
-  if (result.lower_bound_mm3)
-    verdict->claims.push_back(
-        {"lower bound below the sized volume", *result.lower_bound_mm3 <= result.size_volume_mm3 * slack,
-         fmt::format("bound {:.1f} mm3, size {:.1f} mm3", *result.lower_bound_mm3, result.size_volume_mm3)});
 }
 
 void claim_inside(const ExportedPrinter& result, const Surface& outer, Verdict* verdict) {

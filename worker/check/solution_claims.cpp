@@ -69,11 +69,6 @@ void claim_volumes(const ExportedPrinter& figures, Verdict* verdict) {
            figures.geometry_volume_mm3 <= figures.topology_volume_mm3 * slack,
        fmt::format("size {:.6g}, topology {:.6g}, geometry {:.6g} mm3", figures.size_volume_mm3,
                    figures.topology_volume_mm3, figures.geometry_volume_mm3)});
-  if (figures.lower_bound_mm3)
-    verdict->claims.push_back({"lower bound below the sized volume",
-                               *figures.lower_bound_mm3 <= figures.size_volume_mm3 * slack,
-                               fmt::format("bound {:.6g} mm3, size {:.6g} mm3", *figures.lower_bound_mm3,
-                                           figures.size_volume_mm3)});
 }
 
 void claim_balance_rows(const ExportedPrinter& figures, Verdict* verdict) {

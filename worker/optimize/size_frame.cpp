@@ -16,6 +16,10 @@ namespace {
 // primal error.
 constexpr double kElasticEnough = 0.98;
 constexpr double kElasticError = 1e-4;
+// The least violation is told to four digits, and need not be known to more.
+constexpr double kElasticRoughly = 100;
+// t weighs as much as the whole volume: a smaller barrier to begin with leaves its duals far from central.
+constexpr double kElasticBarrier = 1;
 // The least violation of balance counts as none below this, mm.
 constexpr double kBalanceToleranceMm = 1e-6;
 // A hint is a start when it is at most this far from feasible.
@@ -175,6 +179,8 @@ class Sizing {
         ProgramRequest elastic = request(cases);
         elastic.limit_factor = factor;
         elastic.elastic = ElasticScope::kLimits;
+        elastic.tolerance_factor = kElasticRoughly;
+        elastic.initial_barrier = kElasticBarrier;
         return session_.solve(problem_, elastic, from, stop);
       });
     };

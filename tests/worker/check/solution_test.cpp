@@ -79,7 +79,8 @@ TEST_F(SolutionTest, AnHonestResultHoldsInEveryClaimAndEachLieIsDenied) {
   EXPECT_THAT(report_denied([](json& f) { f["volumes_mm3"]["size"] = 1; }),
               Contains("no volume rises from stage to stage"));
   EXPECT_THAT(report_denied([](json& f) { f["lower_bound_mm3"] = 1e9; }),
-              Contains("lower bound below the sized volume"));
+              Contains("lower bound of the sized volume"));
+  EXPECT_THAT(report_denied([](json& f) { f["gap"] = -0.2; }), Contains("lower bound of the sized volume"));
   EXPECT_THAT(report_denied([](json& f) { f["evaluation"]["max_displacement_mm"] = 0.01; }),
               Contains("displacement (paper model)"));
   EXPECT_THAT(report_denied([](json& f) { f["evaluation"]["max_axial_ratio"] = 0.9; }),
@@ -99,6 +100,48 @@ TEST_F(SolutionTest, AnHonestResultHoldsInEveryClaimAndEachLieIsDenied) {
   EXPECT_THAT(result_denied([](json& r) { r["struts"] = json::array(); }), Contains("frame"));
   EXPECT_THAT(result_denied([](json& r) { r["struts"][0]["a"] = 44; }),
               Contains(::testing::HasSubstr("44 is not a node")));
+}
+
+TEST_F(SolutionTest, LowerBoundsAreVerifiedForTheFrameThatWasGiven) {
+  solve(standing_tripod());
+  using ::testing::Contains;
+  const Names proven = {"lower bound of the sized volume, proven"};
+  const double bound = read("report.json")["frame"]["lower_bound_mm3"];
+  EXPECT_THAT(report_denied([&](json& f) { f["lower_bound_mm3"] = 1.0001 * bound; }), Contains(proven[0]));
+  EXPECT_THAT(result_denied([](json& r) { r["lower_bound_proof"] = nullptr; }), proven);
+  EXPECT_THAT(result_denied([](json& r) { r["lower_bound_proof"]["fields"] = json::array(); }), proven);
+  EXPECT_THAT(result_denied([](json& r) { r["lower_bound_proof"]["feasibility_tolerance"] = 0.5; }), proven);
+  EXPECT_THAT(result_denied([](json& r) { r["lower_bound_proof"]["volume_weight"] = 2; }), proven);
+  EXPECT_THAT(
+      result_denied([](json& r) { r["lower_bound_proof"]["fields"][0]["displacement_multiplier"] = -1.0; }),
+      proven);
+  EXPECT_THAT(result_denied([](json& r) {
+                for (json& d : r["lower_bound_proof"]["fields"][0]["displacements_mm"]) d[2] = 0.0;
+              }),
+              proven);
+  EXPECT_THAT(result_denied([](json& r) { r["given"]["load_cases"][0]["forces"] = json::array(); }),
+              Contains(proven[0]));
+  EXPECT_THAT(result_denied([](json& r) { r["lower_bound_proof"]["fields"][0]["load_case"] = 7; }),
+              Contains(::testing::HasSubstr("7 is not a load case")));
+}
+
+TEST_F(SolutionTest, ACertificateOfInfeasibilityIsVerified) {
+  json weak = standing_tripod();
+  weak["load_cases"][0]["forces"][0]["force_n"] = {0, 0, -1e5};
+  solve(weak);
+  using ::testing::Contains;
+  const std::string proven = "no radii keep the limits";
+  EXPECT_THAT(report_denied([](json&) {}), ::testing::IsEmpty());
+  EXPECT_THAT(result_denied([](json& r) { r["certificate"] = nullptr; }), Contains(proven));
+  EXPECT_THAT(result_denied([](json& r) { r["displacement_limit_mm"] = 1e4; }), Contains(proven));
+  EXPECT_THAT(result_denied([](json& r) {
+                for (json& strut : r["struts"]) strut["max_radius_mm"] = 1e4;
+              }),
+              Contains(proven));
+  EXPECT_THAT(result_denied([](json& r) {
+                for (json& d : r["certificate"]["fields"][0]["displacements_mm"]) d = {0.0, 0.0, 0.0};
+              }),
+              Contains(proven));
 }
 
 TEST_F(SolutionTest, APinJointedFrameIsJudgedByItsOwnModel) {
