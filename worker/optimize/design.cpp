@@ -105,10 +105,10 @@ Design reduced_design(const Design& design, std::vector<bool> keep) {
   p.balance = from.balance;
   p.skin_mass = from.skin_mass;
   for (const LoadCase& load : from.load_cases) p.load_cases.push_back({load.name, load.gravity, {}});
-  std::vector<int> renumbered(stays.size(), -1);
+  std::vector<int> new_number(stays.size(), -1);
   for (std::size_t i = 0; i < stays.size(); ++i) {
     if (!stays[i]) continue;
-    renumbered[i] = static_cast<int>(p.frame.nodes_mm.size());
+    new_number[i] = static_cast<int>(p.frame.nodes_mm.size());
     p.frame.nodes_mm.push_back(from.frame.nodes_mm[i]);
     if (static_cast<int>(i) < from.frame.skin_node_count) ++p.frame.skin_node_count;
     p.fixed.push_back(from.fixed[i]);
@@ -121,13 +121,14 @@ Design reduced_design(const Design& design, std::vector<bool> keep) {
   for (std::size_t j = 0; j < keep.size(); ++j) {
     if (!keep[j]) continue;
     const Strut& strut = from.frame.struts[j];
-    p.frame.struts.push_back({renumbered[strut.a], renumbered[strut.b], strut.is_skin});
+    p.frame.struts.push_back({new_number[strut.a], new_number[strut.b], strut.is_skin});
     p.bounds.push_back(from.bounds[j]);
     to.strut_origin.push_back(design.strut_origin[j]);
     if (!design.areas_mm2.empty()) to.areas_mm2.push_back(design.areas_mm2[j]);
   }
+  to.warm = renumbered(design.warm, new_number, static_cast<int>(p.frame.nodes_mm.size()));
   for (const auto& t : from.frame.skin_triangles) {
-    const std::array<int, 3> corners{renumbered[t[0]], renumbered[t[1]], renumbered[t[2]]};
+    const std::array<int, 3> corners{new_number[t[0]], new_number[t[1]], new_number[t[2]]};
     if (corners[0] >= 0 && corners[1] >= 0 && corners[2] >= 0) p.frame.skin_triangles.push_back(corners);
   }
   return to;

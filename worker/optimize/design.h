@@ -8,6 +8,7 @@
 
 #include "worker/mechanics/frame_problem.h"
 #include "worker/optimize/optimize_frame.h"
+#include "worker/optimize/warm_start.h"
 
 namespace skinframe {
 
@@ -19,6 +20,7 @@ struct Design {
   Termination reason = Termination::kOptimal;
   std::string detail;
   double kkt_error = 0;
+  WarmStart warm;                              // duals of that sizing, or none
   std::vector<int> node_origin, strut_origin;  // in the input
 };
 

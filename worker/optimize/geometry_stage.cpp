@@ -6,6 +6,8 @@
 #include <numbers>
 #include <optional>
 
+#include "worker/optimize/merge_nodes.h"
+#include "worker/optimize/restore_struts.h"
 #include "worker/optimize/size_frame.h"
 
 namespace skinframe {
@@ -16,13 +18,17 @@ using Eigen::Vector3d;
 constexpr double kNearBarrier = 1e-2;
 // The moved frame is sized again: the pass itself need not be exact, nor be waited for when it does not
 // converge.
-constexpr double kRoughly = 10;
+constexpr double kRoughly = 100;
 constexpr int kPatientIterations = 80;
-// A node this close to the edge of its region, relative to its box, does not move in this pass.
+// A node this close to the edge of its region, relative to its reach, does not move in this pass.
 constexpr double kEdgeShare = 1e-3;
 // The least length is at most this share of the present one, so that the start is inside.
 constexpr double kLeastLengthShare = 0.98;
 constexpr double kDefaultLengthShare = 0.5;
+// A load case that took no part joins when the moved frame exceeds its limits by this, relative.
+constexpr double kCaseExcess = 1e-3;
+// Sets of contractions tried after one pass.
+constexpr int kMostContractions = 6;
 
 std::vector<double> distance_to_nearest(const Frame& frame, const std::vector<bool>& wanted) {
   std::vector<double> distance(frame.nodes_mm.size(), std::numeric_limits<double>::infinity());
@@ -36,7 +42,7 @@ std::vector<double> distance_to_nearest(const Frame& frame, const std::vector<bo
   return distance;
 }
 
-// The regions of the nodes that move in this pass: the caller's half-spaces and the box of the move limit.
+// The regions of the nodes that move in this pass: the caller's half-spaces, or the box of the move limit.
 NodeRegions regions_of(const Design& design, const OptimizeOptions& options) {
   const FrameProblem& problem = design.problem;
   const Frame& frame = problem.frame;
@@ -65,6 +71,15 @@ NodeRegions regions_of(const Design& design, const OptimizeOptions& options) {
   return any ? regions : NodeRegions{};
 }
 
+// Demand over limit of each load case.
+std::vector<double> demands(const FrameProblem& problem, const std::vector<double>& areas_mm2) {
+  std::vector<double> result;
+  const std::vector<double> radii = radii_of(areas_mm2);
+  for (const CaseResponse& response : solve_equilibrium(problem, areas_mm2))
+    result.push_back(utilisation(evaluate(problem, radii, {response})));
+  return result;
+}
+
 ProgramRequest geometry_request(const Design& design, NodeRegions regions, const OptimizeOptions& options) {
   const FrameProblem& problem = design.problem;
   ProgramRequest request;
@@ -81,52 +96,94 @@ ProgramRequest geometry_request(const Design& design, NodeRegions regions, const
     if (moves)  // slenderness is a constraint of its own there
       request.lower_mm2[j] = std::numbers::pi * problem.bounds[j].min_mm * problem.bounds[j].min_mm;
   }
-  const std::vector<CaseResponse> responses = solve_equilibrium(problem, design.areas_mm2);
-  double worst = -1;
-  for (int k = 0; k < static_cast<int>(responses.size()); ++k) {
-    const double demand = utilisation(evaluate(problem, radii_of(design.areas_mm2), {responses[k]}));
-    if (demand > worst) worst = demand, request.cases = {k};
-  }
   request.regions = std::move(regions);
   return request;
 }
 
+Design moved_design(const Design& design, const ProgramOutcome& outcome, double share) {
+  Design moved = design;
+  for (std::size_t i = 0; i < moved.problem.frame.nodes_mm.size(); ++i)
+    moved.problem.frame.nodes_mm[i] += share * (outcome.positions_mm[i] - design.problem.frame.nodes_mm[i]);
+  if (!outcome.warm.empty()) moved.warm = outcome.warm;
+  return moved;
+}
+
+bool accepted(const Design& design, const std::vector<double>& areas_mm2, const OptimizeOptions& options) {
+  return !options.accepts || options.accepts(design.problem.frame, radii_of(areas_mm2));
+}
+
 // The moved frame, sized and accepted, with the move shortened until it is.
 std::optional<Design> settle(const Design& design, const ProgramOutcome& outcome, Session& session) {
+  const OptimizeOptions& options = session.options();
   double share = 1;
-  for (int halving = 0; halving <= session.options().max_move_halvings; ++halving, share /= 2) {
-    Design moved = design;
-    for (std::size_t i = 0; i < moved.problem.frame.nodes_mm.size(); ++i)
-      moved.problem.frame.nodes_mm[i] += share * (outcome.positions_mm[i] - design.problem.frame.nodes_mm[i]);
-    SizedFrame sized = size_frame(moved.problem, outcome.areas_mm2, session);
-    if (sized.cancelled) return std::nullopt;
-    if (!sized.feasible() || !(sized.volume_mm3() < design.volume_mm3)) continue;
-    const auto& accepts = session.options().accepts;
-    if (accepts && !accepts(moved.problem.frame, radii_of(sized.areas_mm2))) continue;
-    take_sizing(moved, std::move(sized));
-    return moved;
+  for (int halving = 0; halving <= options.max_move_halvings; ++halving, share /= 2) {
+    Design moved = moved_design(design, outcome, share);
+    if (!accepted(moved, outcome.areas_mm2, options)) continue;  // sizing would hardly mend that
+    const bool smaller = size_again(moved, outcome.areas_mm2, design.volume_mm3, session);
+    if (session.cancelled()) return std::nullopt;
+    if (!smaller || !(moved.volume_mm3 < design.volume_mm3)) continue;
+    if (accepted(moved, moved.areas_mm2, options)) return moved;
   }
   return std::nullopt;
 }
 
-}  // namespace
+// One pass; `cases` are those that took part so far.
+std::optional<Design> moved_once(const Design& design, std::vector<int>& cases, Session& session) {
+  NodeRegions regions = regions_of(design, session.options());
+  if (regions.empty()) return std::nullopt;
+  ProgramRequest request = geometry_request(design, std::move(regions), session.options());
+  for (;;) {
+    request.cases = cases;
+    session.offer(design.warm);
+    const ProgramOutcome outcome = session.solve(design.problem, request, design.areas_mm2);
+    session.offer({});
+    if (outcome.end == InteriorPointEnd::kCancelled) return std::nullopt;
+    const std::vector<double> demand = demands(moved_design(design, outcome, 1).problem, outcome.areas_mm2);
+    const std::size_t before = cases.size();
+    for (int k = 0; k < static_cast<int>(demand.size()); ++k)
+      if (demand[k] > 1 + kCaseExcess && std::find(cases.begin(), cases.end(), k) == cases.end())
+        cases.push_back(k);
+    if (cases.size() == before) return settle(design, outcome, session);
+  }
+}
 
-Design optimise_geometry(Design design, Session& session) {
+// Contracts what has become short: all at once, then half as many, shortest first, until the sized result is
+// no larger.
+Design merged(Design design, Session& session) {
   const OptimizeOptions& options = session.options();
-  for (int pass = 0; pass < options.max_geometry_passes; ++pass) {
-    if (design.problem.free_nodes.empty()) break;
-    NodeRegions regions = regions_of(design, options);
-    if (regions.empty()) break;
-    const ProgramOutcome outcome = session.solve(
-        design.problem, geometry_request(design, std::move(regions), options), design.areas_mm2);
-    if (outcome.end == InteriorPointEnd::kCancelled) break;
-    const double before = design.volume_mm3;
-    auto moved = settle(design, outcome, session);
-    if (!moved) break;
-    design = std::move(*moved);
-    if (design.volume_mm3 > (1 - options.geometry_decrease) * before) break;
+  std::vector<int> chosen = contractible_struts(design, options.merge_share);
+  for (int attempt = 0; attempt < kMostContractions && !chosen.empty(); ++attempt) {
+    auto fewer = contracted_design(design, chosen);
+    if (fewer) {
+      const std::vector<double> hint = fewer->areas_mm2;
+      if (size_again(*fewer, hint, (1 + kVolumeTie) * design.volume_mm3, session) &&
+          accepted(*fewer, fewer->areas_mm2, options))
+        return std::move(*fewer);
+      if (session.cancelled()) return design;
+    }
+    chosen.resize(chosen.size() / 2);
   }
   return design;
+}
+
+}  // namespace
+
+GeometryOutcome optimise_geometry(Design design, Session& session) {
+  const OptimizeOptions& options = session.options();
+  if (design.problem.free_nodes.empty()) return {std::move(design), true};
+  const std::vector<double> demand = demands(design.problem, design.areas_mm2);
+  std::vector<int> cases;
+  if (!demand.empty())
+    cases.push_back(static_cast<int>(std::max_element(demand.begin(), demand.end()) - demand.begin()));
+  for (int pass = 0; pass < options.max_geometry_passes; ++pass) {
+    const double before = design.volume_mm3;
+    auto moved = moved_once(design, cases, session);
+    if (session.cancelled() || !moved) return {std::move(design), true};
+    design = merged(std::move(*moved), session);
+    if (session.cancelled() || design.volume_mm3 > (1 - options.geometry_decrease) * before)
+      return {std::move(design), true};
+  }
+  return {std::move(design), false};
 }
 
 }  // namespace skinframe

@@ -41,7 +41,8 @@ class InteriorPoint {
         kkt_(program_, layout_, options.team, options.cancelled),
         line_search_(program_, layout_),
         barrier_(options.initial_barrier, kSmallestBarrierShare * options.tolerance),
-        iterate_(start_iterate(program_, layout_, std::move(start), options.initial_barrier)) {}
+        iterate_(start_iterate(program_, layout_, std::move(start), options.initial_barrier,
+                               options.start_duals)) {}
 
   InteriorPointResult run() {
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
@@ -143,7 +144,7 @@ class InteriorPoint {
   }
 
   InteriorPointResult result(InteriorPointEnd end, int iterations) const {
-    return {end, iterate_.point, kkt_error(program_, layout_, iterate_, 0), iterations};
+    return {end, iterate_.point, iterate_.duals, kkt_error(program_, layout_, iterate_, 0), iterations};
   }
 
   const FrameProgram& program_;

@@ -18,6 +18,7 @@ struct InteriorPointOptions {
   double tolerance = 1e-7;  // stops when the scaled error at mu = 0 is <= this
   int max_iterations = 300;
   double initial_barrier = 0.1;
+  Eigen::VectorXd start_duals;  // of each inequality, 0: not known; empty: none is. See start_iterate.
   // Called once an iteration; false: stop, cancelled.
   std::function<bool(const IterationRecord&)> each = [](const IterationRecord&) { return true; };
   // Asked many times during a factorisation; true: stop, cancelled.
@@ -33,7 +34,8 @@ struct InteriorPointOptions {
 
 struct InteriorPointResult {
   InteriorPointEnd end = InteriorPointEnd::kStuck;
-  ProgramVector point;  // the last iterate; the best one when acceptable
+  ProgramVector point;    // the last iterate; the best one when acceptable
+  Eigen::VectorXd duals;  // of its inequalities
   KktError error;
   int iterations = 0;
 };

@@ -42,20 +42,30 @@ KktError kkt_error(const FrameProgram& program, const InequalityLayout& layout, 
 }
 
 Iterate start_iterate(const FrameProgram& program, const InequalityLayout& layout, ProgramVector point,
-                      double barrier) {
+                      double barrier, const VectorXd& known_duals) {
+  const bool warm = known_duals.size() > 0;
+  const VectorXd slope = warm ? lagrangian_gradient(program, layout, point, known_duals).areas
+                              : VectorXd::Zero(program.strut_count());
+  // How far off a bound that pulls with this slope.
+  const auto central = [&](double pull, double push) {
+    return pull * push > barrier ? barrier / pull : push;
+  };
   for (int j = 0; j < program.strut_count(); ++j) {
     if (program.area_is_given(j)) {
       point.areas[j] = program.lower[j];
       continue;
     }
     const double push = std::min(kPushIntoBounds * (program.upper[j] - program.lower[j]), kLargestPush);
-    point.areas[j] = std::clamp(point.areas[j], program.lower[j] + push, program.upper[j] - push);
+    point.areas[j] = std::clamp(point.areas[j], program.lower[j] + central(slope[j], push),
+                                program.upper[j] - central(-slope[j], push));
   }
   const VectorXd c = inequalities(program, layout, point);
   Iterate iterate{std::move(point), (-c).cwiseMax(kSlackFloor), VectorXd()};
   for (int i = 0; i < layout.displacement; ++i) iterate.slacks[i] = -c[i];
   for (int i = layout.half_space; i < layout.rows; ++i)
     if (c[i] < 0) iterate.slacks[i] = -c[i];
+  for (int i = layout.displacement; warm && i < layout.slenderness; ++i)
+    if (known_duals[i] * kSlackFloor > barrier) iterate.slacks[i] = std::max(-c[i], barrier / known_duals[i]);
   iterate.duals = barrier * iterate.slacks.cwiseInverse();
   return iterate;
 }

@@ -25,8 +25,12 @@ KktError kkt_error(const FrameProgram& program, const InequalityLayout& layout, 
 
 // The iterate at `point` with slacks that fit it, at least slack_floor, and duals barrier / slack. Areas and
 // moving nodes are first pushed a little inside their bounds.
+//
+// known_duals: empty, or one an inequality, 0 where not known; together with the point's multipliers. Then
+// each area stands off its bounds no further than the barrier's own solution does, barrier / |slope of the
+// Lagrangian|, and the slack of an active limit is barrier / dual: a start near the central path.
 Iterate start_iterate(const FrameProgram& program, const InequalityLayout& layout, ProgramVector point,
-                      double barrier);
+                      double barrier, const Eigen::VectorXd& known_duals = {});
 
 // Slacks of linear inequalities (areas, half-spaces) follow the point exactly, the others grow where c leaves
 // room.

@@ -58,7 +58,8 @@ Status OptimizeOptions::validate() const {
                 "topology_removal_share must lie in (0, 1)"),
         require(max_geometry_passes > 0, "max_geometry_passes must be positive"),
         require(geometry_decrease >= 0 && geometry_decrease < 1, "geometry_decrease must lie in [0, 1)"),
-        require(region_share > 0 && region_share < 0.5, "region_share must lie in (0, 0.5)"),
+        require(region_share > 0 && region_share <= 100, "region_share must lie in (0, 100]"),
+        require(merge_share >= 0 && merge_share < 1, "merge_share must lie in [0, 1)"),
         require(min_length_mm >= 0, "min_length_mm must not be negative"),
         require(max_move_halvings >= 0, "max_move_halvings must not be negative")})
     if (!status.ok()) return status;
@@ -104,6 +105,7 @@ class Algorithm {
         result_.best_reachable_displacement_mm = sized.evaluation.max_displacement_mm;
       if (sized.lower_bound_mm3) sized.detail += ": the global optimum for the nodes and struts given";
       take_sizing(design_, std::move(sized));
+      design_.warm = session_.latest();
     });
     result_.size = result_.topology = result_.geometry = record_of(design_.problem, design_.volume_mm3);
     if (session_.cancelled() || !options_.bounds || design_.reason == Termination::kInfeasible) return;
@@ -148,6 +150,7 @@ class Algorithm {
         options_.topology || (options_.relaxed && options_.order == OptimizeOptions::Order::kTight);
     if (!topology && !options_.geometry) return;
     const Design sized = design_;
+    bool settled = false;
     for (int round = 0; round < options_.max_outer_iterations; ++round) {
       const double before = design_.volume_mm3;
       const std::size_t struts = design_.problem.frame.struts.size();
@@ -159,11 +162,16 @@ class Algorithm {
         result_.topology = record_of(design_.problem, design_.volume_mm3);
         if (topology) bound_removal(sized);
       }
-      if (round > 0 && design_.problem.frame.struts.size() == struts)
+      if (round > 0 && settled && design_.problem.frame.struts.size() == struts)
         return;  // geometry has already had this frame
-      if (options_.geometry)
-        timed("geometry", Stage::kGeometry,
-              [&] { design_ = optimise_geometry(std::move(design_), session_); });
+      // Once geometry has settled, what topology changed has to be worth another pass.
+      const bool changed = design_.volume_mm3 <= (1 - options_.geometry_decrease) * before;
+      if (options_.geometry && (round == 0 || changed || !settled))
+        timed("geometry", Stage::kGeometry, [&] {
+          GeometryOutcome outcome = optimise_geometry(std::move(design_), session_);
+          design_ = std::move(outcome.design);
+          settled = outcome.settled;
+        });
       if (session_.cancelled()) return;
       result_.geometry = record_of(design_.problem, design_.volume_mm3);
       result_.outer_iterations = round + 1;

@@ -39,7 +39,8 @@ struct OptimizeOptions {
   bool geometry = true;
 
   // The regions of the free nodes about the present frame, asked for before each geometry pass. Empty: a box
-  // around each free node of half width region_share times the distance to its nearest neighbour.
+  // around each free node of half width region_share times the distance to its nearest neighbour. A box of
+  // that width bounds a pass in any case.
   std::function<NodeRegions(const Frame&, const std::vector<double>& radii_mm)> convex_regions;
   // Geometry's veto on a moved and re-sized frame. False: the pass's move is halved up to max_move_halvings
   // times, then the pass is dropped. Topology drops a removal that turns an accepted frame into one that is
@@ -78,7 +79,10 @@ struct OptimizeOptions {
   // GeoOpt: passes a round; a pass counts when volume <= (1 - geometry_decrease) * volume before.
   int max_geometry_passes = 4;       // > 0
   double geometry_decrease = 0.002;  // [0, 1)
-  double region_share = 0.45;        // of the distance to the nearest neighbour, (0, 0.5)
+  double region_share = 3;           // of the distance to the nearest neighbour, (0, 100]
+  // A strut of a free node shorter than this share of the mean of such struts is contracted where the sized
+  // result is no larger, [0, 1); 0: none is.
+  double merge_share = 0.35;
   double min_length_mm = 0;   // struts of free nodes stay at least this long; 0: half of their present length
   int max_move_halvings = 3;  // >= 0
 
@@ -131,8 +135,9 @@ struct OptimizeResult {
   std::string
       violated_constraint;  // when infeasible: displacement, axial stress, shear stress, balance, equilibrium
   std::map<std::string, double> seconds;  // "size", "topology", "geometry"
-  std::vector<int> node_origin;           // index in the input frame, one a node of problem.frame
-  std::vector<int> strut_origin;          // the same for struts
+  // Index in the input frame, one a node of problem.frame; a node that took others in keeps its own.
+  std::vector<int> node_origin;
+  std::vector<int> strut_origin;  // the same for struts; of struts that became one, of the one that stayed
 };
 
 // Errors: invalid input (problem or options), cancelled, internal (a library gave up). std::bad_alloc passes

@@ -97,6 +97,7 @@ ScaledProgram::ScaledProgram(const FrameProblem& problem, ProgramRequest request
   add_geometry();
   add_strain_limits();
   add_balance();
+  add_warm_start();
   if (request_.elastic != ElasticScope::kNone) {
     const InequalityLayout layout(program_);
     const VectorXd c = inequalities(program_, layout, start_);  // t = 0 so far
@@ -169,6 +170,45 @@ void ScaledProgram::add_geometry() {
   program_.squared_min_length.resize(program_.strut_count());
   for (int j = 0; j < program_.strut_count(); ++j)
     program_.squared_min_length[j] = std::pow(request_.min_length_mm[j] / scale_.length_mm, 2);
+}
+
+void ScaledProgram::add_warm_start() {
+  const WarmStart& warm = request_.warm;
+  const int n = program_.node_count();
+  if (!warm.fits(n)) return;
+  const InequalityLayout layout(program_);
+  start_duals_ = VectorXd::Zero(layout.count);
+  for (std::size_t k = 0; k < request_.cases.size(); ++k) {
+    const auto known = std::find(warm.cases.begin(), warm.cases.end(), request_.cases[k]);
+    if (known == warm.cases.end()) continue;
+    const auto from = known - warm.cases.begin();
+    for (int i = 0; i < n; ++i) {
+      for (int axis = 0; axis < 3; ++axis)
+        if (!program_.fixed[i][axis])
+          start_.multipliers[k](axis, i) = warm.multipliers[from][i][axis] / multiplier_unit();
+      if (program_.squared_displacement_limit)
+        start_duals_[layout.displacement_at(static_cast<int>(k), i, n)] =
+            warm.displacement_duals[from][i] / (scale_.area_mm2 * scale_.length_mm);
+    }
+  }
+}
+
+WarmStart ScaledProgram::warm_start(const ProgramVector& point, const VectorXd& duals) const {
+  WarmStart warm;
+  const int n = program_.node_count();
+  const InequalityLayout layout(program_);
+  warm.cases = request_.cases;
+  for (std::size_t k = 0; k < request_.cases.size(); ++k) {
+    warm.multipliers.emplace_back(n, Vector3d::Zero());
+    warm.displacement_duals.emplace_back(n, 0.0);
+    for (int i = 0; i < n; ++i) {
+      warm.multipliers[k][i] = multiplier_unit() * point.multipliers[k].col(i);
+      if (program_.squared_displacement_limit)
+        warm.displacement_duals[k][i] =
+            scale_.area_mm2 * scale_.length_mm * duals[layout.displacement_at(static_cast<int>(k), i, n)];
+    }
+  }
+  return warm;
 }
 
 std::vector<double> ScaledProgram::areas_mm2(const ProgramVector& point) const {

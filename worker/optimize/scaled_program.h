@@ -17,6 +17,8 @@
 #include "worker/mechanics/equilibrium.h"
 #include "worker/mechanics/frame_problem.h"
 #include "worker/optimize/frame_program.h"
+#include "worker/optimize/iterate.h"
+#include "worker/optimize/warm_start.h"
 
 namespace skinframe {
 
@@ -37,6 +39,7 @@ struct ProgramRequest {
   double initial_barrier = 0.1;       // less where the start is near the optimum
   double tolerance_factor = 1;        // on OptimizeOptions::kkt_tolerance
   std::optional<int> max_iterations;  // beneath the options' own
+  WarmStart warm;                     // duals to start from; empty: none
 };
 
 // Lower and upper areas of all struts as area_bounds leaves them.
@@ -52,9 +55,16 @@ class ScaledProgram {
     return start_;
   }  // areas as given, displacements in equilibrium, multipliers zero
 
+  // For InteriorPointOptions::start_duals: what the request's warm start knows; empty when that is empty.
+  const Eigen::VectorXd& start_duals() const { return start_duals_; }
+  WarmStart warm_start(const ProgramVector& point, const Eigen::VectorXd& duals) const;
+
   std::vector<double> areas_mm2(const ProgramVector& point) const;
   NodeVectors positions_mm(const ProgramVector& point) const;
   double volume_mm3(double scaled_volume) const { return scaled_volume * scale_.area_mm2 * scale_.length_mm; }
+  // How far the optimum may lie below the volume of a point of this error: the sum of duals times slacks, at
+  // most.
+  double gap(const KktError& error) const { return error.complementarity * InequalityLayout(program_).count; }
   void restore_equilibrium(ProgramVector& point) const;
 
  private:
@@ -62,12 +72,15 @@ class ScaledProgram {
   void add_strain_limits();
   void add_balance();
   void add_geometry();
+  void add_warm_start();
+  double multiplier_unit() const { return scale_.area_mm2 * scale_.length_mm / scale_.force_n; }
 
   const FrameProblem& problem_;
   ProgramRequest request_;
   ProgramScale scale_;
   FrameProgram program_;
   ProgramVector start_;
+  Eigen::VectorXd start_duals_;
 };
 
 }  // namespace skinframe

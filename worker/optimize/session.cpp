@@ -4,11 +4,25 @@
 #include <algorithm>
 
 namespace skinframe {
+namespace {
+
+// Where duals are known the first barrier may be small.
+constexpr double kWarmBarrier = 1e-3;
+
+// Errors at which the volume less the gap of complementarity bounds the optimum well enough to give up.
+constexpr double kNearPrimal = 1e-3, kNearDual = 1e-2;
+
+}  // namespace
 
 ProgramOutcome Session::solve(const FrameProblem& problem, ProgramRequest request,
                               const std::vector<double>& start_mm2,
                               std::function<bool(const ProgramVector&, const KktError&)> good_enough) {
   const int struts = static_cast<int>(problem.frame.struts.size());
+  const bool least_volume = request.elastic == ElasticScope::kNone && !request.volume_cap_mm3;
+  if (least_volume && request.warm.empty() && offered_.fits(problem.frame.nodes_mm.size())) {
+    request.warm = offered_;
+    request.initial_barrier = std::min(request.initial_barrier, kWarmBarrier);
+  }
   InteriorPointOptions options;
   options.initial_barrier = request.initial_barrier;
   options.tolerance = request.tolerance_factor * options_.kkt_tolerance;
@@ -28,13 +42,23 @@ ProgramOutcome Session::solve(const FrameProblem& problem, ProgramRequest reques
   };
   options.cancelled = [&] { return context_.cancelled(); };
   options.team = team_;
+  if (least_volume && most_mm3_)
+    options.good_enough = [&](const ProgramVector& point, const KktError& error) {
+      return error.primal <= kNearPrimal && error.dual <= kNearDual &&
+             scaled.volume_mm3(program_volume(scaled.program(), point) - scaled.gap(error)) > *most_mm3_;
+    };
   if (good_enough) options.good_enough = std::move(good_enough);
+  options.start_duals = scaled.start_duals();
   options.restore_equilibrium = [&](ProgramVector& point) { scaled.restore_equilibrium(point); };
 
   const InteriorPointResult result = solve_program(scaled.program(), scaled.start(), options);
   iterations_ += result.iterations;
-  return {result.end, scaled.areas_mm2(result.point), scaled.positions_mm(result.point), result.point.elastic,
-          result.error.worst()};
+  ProgramOutcome outcome{
+      result.end,           scaled.areas_mm2(result.point), scaled.positions_mm(result.point),
+      result.point.elastic, result.error.worst(),           {}};
+  if (least_volume && outcome.converged())
+    latest_ = outcome.warm = scaled.warm_start(result.point, result.duals);
+  return outcome;
 }
 
 }  // namespace skinframe

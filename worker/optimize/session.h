@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "worker/optimize/interior_point.h"
@@ -18,6 +19,7 @@ struct ProgramOutcome {
   NodeVectors positions_mm;
   double elastic = 0;
   double kkt_error = 0;
+  WarmStart warm;  // for the next program of a near frame; empty unless converged to a least volume
 
   bool converged() const { return end == InteriorPointEnd::kOptimal || end == InteriorPointEnd::kAcceptable; }
 };
@@ -32,6 +34,13 @@ class Session {
   int interior_point_iterations() const { return iterations_; }
   void enter(Stage stage) { stage_ = stage, stage_iteration_ = 0; }
 
+  // The duals that programs of least volume start from, as long as the count of nodes fits; empty: none.
+  void offer(WarmStart warm) { offered_ = std::move(warm); }
+  // Programs of least volume stop as soon as their optimum is sure to lie above this; none: they run on.
+  void give_up_above(std::optional<double> volume_mm3) { most_mm3_ = volume_mm3; }
+  // Of the last program of least volume that converged.
+  const WarmStart& latest() const { return latest_; }
+
   // Builds the program, runs the interior point, reports progress at each of its iterations. `good_enough`:
   // see there.
   ProgramOutcome solve(const FrameProblem& problem, ProgramRequest request,
@@ -45,6 +54,8 @@ class Session {
   Stage stage_ = Stage::kSize;
   int stage_iteration_ = 0;
   int iterations_ = 0;
+  WarmStart offered_, latest_;
+  std::optional<double> most_mm3_;
 };
 
 }  // namespace skinframe

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <stop_token>
 
 #include "tests/worker/mechanics/small_frames.h"
@@ -39,10 +40,14 @@ void expect_sound(const FrameProblem& input, const OptimizeResult& r) {
               1e-9 * r.geometry.volume_mm3);
   ASSERT_EQ(r.node_origin.size(), r.problem.frame.nodes_mm.size());
   ASSERT_EQ(r.strut_origin.size(), r.problem.frame.struts.size());
+  const auto stands = [&](int origin) {
+    return std::find(r.node_origin.begin(), r.node_origin.end(), origin) != r.node_origin.end();
+  };
   for (std::size_t j = 0; j < r.strut_origin.size(); ++j) {
     const Strut &now = r.problem.frame.struts[j], &then = input.frame.struts[r.strut_origin[j]];
-    EXPECT_EQ(r.node_origin[now.a], then.a);
-    EXPECT_EQ(r.node_origin[now.b], then.b);
+    for (const auto& [end, origin] : {std::pair{now.a, then.a}, std::pair{now.b, then.b}})
+      EXPECT_TRUE(r.node_origin[end] == origin || (input.free_nodes[origin] && !stands(origin)))
+          << "an end is the input's, or that end has become one with another node";
   }
   for (std::size_t i = 0; i < r.node_origin.size(); ++i)
     if (!input.free_nodes[r.node_origin[i]]) {
@@ -191,7 +196,7 @@ TEST(OptimizeFrame, CancellationIsObeyedAtTheNextIteration) {
 
 TEST(OptimizeFrame, BadOptionsAreRefusedByName) {
   OptimizeOptions options;
-  options.region_share = 0.7;
+  options.region_share = 0;
   RunContext context;
   const auto result = optimize_frame(loaded_egg(), options, context);
   ASSERT_FALSE(result.ok());
