@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/optimize/design.h"
 
+#include <algorithm>
 #include <numeric>
 #include <utility>
 
@@ -8,12 +9,23 @@ namespace skinframe {
 namespace {
 
 // Nodes that must stay whatever happens to their struts.
-std::vector<bool> anchored_nodes(const FrameProblem& problem) {
-  std::vector<bool> anchored = loaded_nodes(problem);
+std::vector<bool> lasting_nodes(const FrameProblem& problem) {
+  std::vector<bool> lasting = loaded_nodes(problem);
   const std::vector<bool> of_skin = skin_nodes(problem.frame);
-  for (std::size_t i = 0; i < anchored.size(); ++i) {
-    const auto& axes = problem.fixed[i];
-    if (of_skin[i] || axes[0] || axes[1] || axes[2]) anchored[i] = true;
+  for (std::size_t i = 0; i < lasting.size(); ++i)
+    if (of_skin[i]) lasting[i] = true;
+  return lasting;
+}
+
+// Those, and supports: struts may end there. An axis that is held at every node (of a plane frame) supports
+// none.
+std::vector<bool> anchored_nodes(const FrameProblem& problem) {
+  std::vector<bool> anchored = lasting_nodes(problem);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (std::all_of(problem.fixed.begin(), problem.fixed.end(), [&](const auto& axes) { return axes[axis]; }))
+      continue;
+    for (std::size_t i = 0; i < anchored.size(); ++i)
+      if (problem.fixed[i][axis]) anchored[i] = true;
   }
   return anchored;
 }
@@ -93,7 +105,7 @@ Design reduced_design(const Design& design, std::vector<bool> keep) {
   drop_unreached(from.frame, anchored, keep);
   drop_dangling(from.frame, anchored, keep);
 
-  std::vector<bool> stays = anchored;
+  std::vector<bool> stays = lasting_nodes(from);
   for (std::size_t j = 0; j < keep.size(); ++j)
     if (keep[j]) stays[from.frame.struts[j].a] = stays[from.frame.struts[j].b] = true;
 

@@ -29,8 +29,8 @@ Design initial_design(const FrameProblem& problem);
 
 // The design with the struts of `keep`, and of those only what serves: components without a fixed node that
 // neither belong to the skin nor carry a load go, and so do internal nodes that end up with a single strut,
-// with that strut (it carries nothing). Areas are carried over; volume_mm3 is left at 0, since nothing has
-// been sized.
+// with that strut (it carries nothing), and supports that hold nothing any more. Areas are carried over;
+// volume_mm3 is left at 0, since nothing has been sized.
 Design reduced_design(const Design& design, std::vector<bool> keep);
 
 // Struts that topology optimisation may remove: internal ones, and those whose lower bound is zero.

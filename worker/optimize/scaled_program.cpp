@@ -121,13 +121,16 @@ void ScaledProgram::add_cases() {
 
 // |d| <= epsilon at both ends implies |delta| <= 2 epsilon, and with it (2) and (3) on every strut but the
 // short ones. Of a strut that may vanish although its own bound is positive nothing is asked until it has
-// stayed.
+// stayed; but where there is no limit on d, its strain is all that keeps the frame up. For one load case that
+// is no restriction: the strains of Michell's optimum exceed the limit nowhere.
 void ScaledProgram::add_strain_limits() {
   const auto add = [&](StrainKind kind, const std::optional<double>& strength, double modulus) {
     if (!strength || modulus <= 0) return;
     const double strain = request_.limit_factor * *strength / modulus;
     for (int j = 0; j < program_.strut_count(); ++j) {
-      if (request_.lower_mm2[j] == 0 && area_bounds(problem_, j).lower_mm2 > 0) continue;
+      if (problem_.displacement_limit_mm && request_.lower_mm2[j] == 0 &&
+          area_bounds(problem_, j).lower_mm2 > 0)
+        continue;
       double length = problem_.frame.length_mm(problem_.frame.struts[j]);
       if (program_.strut_moves(j)) length *= kShortening;
       if (problem_.displacement_limit_mm && 2 * scale_.displacement_mm <= strain * length) continue;
