@@ -337,8 +337,18 @@ class Solver {
 
   void advance(double step) {
     point_.areas += step * step_.areas;
-    point_.fields += step * step_.fields;
     point_.multipliers += step * step_.multipliers;
+    // To first order the fields' own step, but taken in y = w / u: where a load case does not bind, u falls
+    // to nothing within a few steps, and a w that does not fall with it would be a huge displacement.
+    for (int k = 0; k < cases_; ++k) {
+      const double weight = case_weight(k), change = (weight - weights_[k]) / step;
+      for (int i = 0; i < static_cast<int>(p_.fixed.size()); ++i) {
+        const int at_node = 3 * (cases_ * i + k);
+        const Vector3d y = displacements_.segment<3>(at_node);
+        const Vector3d dy = (step_.fields.segment<3>(at_node) - change * y) / weights_[k];
+        point_.fields.segment<3>(at_node) = weight * (y + step * dy);
+      }
+    }
     below_dual_ += step * below_step_;
     above_dual_ += step * above_step_;
     slacks_ += step * slack_step_;
