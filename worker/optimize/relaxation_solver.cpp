@@ -14,9 +14,11 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-constexpr double kStepShare = 0.99;      // of the way to the nearest bound
-constexpr double kStartShare = 0.05;     // a start keeps this share of its area, or of the range, to a bound
-constexpr double kStartBarrier = 0.1;    // products of areas and their duals
+constexpr double kStepShare = 0.99;    // of the way to the nearest bound
+constexpr double kStartShare = 0.05;   // a start keeps this share of its area, or of the range, to a bound
+constexpr double kStartBarrier = 0.1;  // products of areas and their duals
+// The fields count as displacements of the areas when their forces miss by this share of the largest load.
+constexpr double kNearlyInEquilibrium = 1e-3;
 constexpr double kLeastStep = 1e-6;      // below it nothing moves any more
 constexpr double kLeastCentring = 0.02;  // of the mean complementarity
 
@@ -36,7 +38,8 @@ class Solver {
     for (; outcome.iterations < options_.max_iterations; ++outcome.iterations) {
       linearise();
       if (options_.each(point_)) return outcome;
-      if (options_.least_excess && excess_.size() > 0 && excess_.maxCoeff() <= 0 && worst_force() <= 1e-6) {
+      if (options_.least_excess && excess_.size() > 0 && excess_.maxCoeff() <= 0 &&
+          worst_force() <= kNearlyInEquilibrium) {
         outcome.feasible = true;
         return outcome;
       }
