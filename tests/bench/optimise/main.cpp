@@ -29,6 +29,7 @@ struct Arguments {
   std::vector<std::string> loads{"self", "side", "three"};
   std::vector<std::string> methods{"ipopt", "size", "tight", "paper", "greedy", "uniform", "mma"};
   MethodLimits limits{300, 1};
+  std::vector<std::string> files;  // problem files, measured with their own loads instead of made frames
   std::string json_file;
   std::string keep;              // folder for the problem files
   std::optional<double> equal;   // SizeOpt's volume over Ipopt's, at most this far from one
@@ -83,9 +84,7 @@ class Bench {
     if (wanted("mma") && !has_nlopt())
       std::cerr << "bench: NLopt was not there when this was built (libnlopt-dev): no rows of nested MMA\n";
     std::cout << table_head() << std::flush;
-    const bool any = for_each_frame(arguments_.frames, [this](const NamedProblem& named) {
-      for (const std::string& load : arguments_.loads) measure(named, load);
-    });
+    const bool any = arguments_.files.empty() ? measure_made_frames() : measure_files();
     if (!arguments_.json_file.empty()) std::ofstream(arguments_.json_file) << rows_.dump(1) << '\n';
     if (!any) return kFailed;
     if (failed_) return kFailed;
@@ -98,12 +97,30 @@ class Bench {
            arguments_.methods.end();
   }
 
-  void measure(const NamedProblem& named, const std::string& load) {
-    const LoadedProblem loaded = with_loads(named.problem, *load_kind(load), !named.fixed_load);
+  bool measure_made_frames() {
+    return for_each_frame(arguments_.frames, [this](const NamedProblem& named) {
+      for (const std::string& load : arguments_.loads)
+        measure(named.name, load, with_loads(named.problem, *load_kind(load), !named.fixed_load));
+    });
+  }
+
+  bool measure_files() {
+    for (const std::string& path : arguments_.files) {
+      auto file = read_problem(path);
+      if (!file) {
+        std::cerr << fmt::format("bench: {}: {}\n", path, file.error().message);
+        return false;
+      }
+      measure(std::filesystem::path(path).stem(), "own", {std::move(file.value().problem), 0});
+    }
+    return true;
+  }
+
+  void measure(const std::string& name, const std::string& load, const LoadedProblem& loaded) {
     const auto file = scratch_.file("problem.json");
     std::ofstream(file) << to_json(loaded.problem, {}, {});
     if (!arguments_.keep.empty()) {
-      const auto kept = fmt::format("{}-{}-{}.json", named.name, loaded.problem.frame.nodes_mm.size(), load);
+      const auto kept = fmt::format("{}-{}-{}.json", name, loaded.problem.frame.nodes_mm.size(), load);
       std::filesystem::create_directories(arguments_.keep);
       std::filesystem::copy_file(file, std::filesystem::path(arguments_.keep) / kept,
                                  std::filesystem::copy_options::overwrite_existing);
@@ -115,7 +132,7 @@ class Bench {
       Row row = method == "ipopt"
                     ? ask_ipopt(*oracle_, file, loaded.problem, kTolerance, arguments_.limits.max_seconds)
                     : run_in_child(method, file);
-      row.frame = named.name;
+      row.frame = name;
       row.load = load;
       row.method = method;
       row.force_n = loaded.force_n;
@@ -195,6 +212,8 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->check(CLI::IsMember(body_names()))
       ->capture_default_str();
+  app.add_option("PROBLEM", arguments.files,
+                 "Problem files to measure on, with their own loads, instead of --frames");
   app.add_option("--sizes", arguments.sizes, "NODES/STRUTS of generated frames")
       ->delimiter(',')
       ->capture_default_str();

@@ -56,6 +56,7 @@ Result<Row> run_optimiser(const FrameProblem& problem, const OptimizeOptions& op
   take_evaluation(result->evaluation, row);
   row.iterations = result->interior_point_iterations;
   row.lower_bound_mm3 = result->lower_bound_mm3;
+  row.relaxed_gap = result->relaxed_gap;
   row.size_volume_mm3 = result->size.volume_mm3;
   row.struts_left = result->geometry.struts;
   row.kkt_error = result->kkt_residual;

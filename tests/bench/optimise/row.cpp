@@ -20,8 +20,8 @@ void read(const json& from, const char* key, std::optional<T>& to) {
 
 std::optional<double> Row::gap() const {
   const std::optional<double> sized = size_volume_mm3 ? size_volume_mm3 : volume_mm3;
-  if (!lower_bound_mm3 || !sized || *sized <= 0) return std::nullopt;
-  return (*sized - *lower_bound_mm3) / *sized;
+  if (!lower_bound_mm3 || !sized || *lower_bound_mm3 <= 0) return std::nullopt;
+  return *sized / *lower_bound_mm3 - 1;
 }
 
 json to_json(const Row& row) {
@@ -43,6 +43,7 @@ json to_json(const Row& row) {
           {"lower_bound_mm3", value_or_null(row.lower_bound_mm3)},
           {"size_volume_mm3", value_or_null(row.size_volume_mm3)},
           {"gap", value_or_null(row.gap())},
+          {"relaxed_gap", value_or_null(row.relaxed_gap)},
           {"struts_left", value_or_null(row.struts_left)},
           {"worst_ratio", value_or_null(row.worst_ratio)},
           {"kkt_error", value_or_null(row.kkt_error)},
@@ -65,6 +66,7 @@ Row row_from_json(const json& from) {
   read(from, "factorisations", row.factorisations);
   read(from, "volume_mm3", row.volume_mm3);
   read(from, "lower_bound_mm3", row.lower_bound_mm3);
+  read(from, "relaxed_gap", row.relaxed_gap);
   read(from, "size_volume_mm3", row.size_volume_mm3);
   read(from, "struts_left", row.struts_left);
   read(from, "worst_ratio", row.worst_ratio);

@@ -26,6 +26,7 @@ struct Row {
   std::optional<int> factorisations;
   std::optional<double> volume_mm3;       // of the frame handed over
   std::optional<double> lower_bound_mm3;  // of SizeOpt
+  std::optional<double> relaxed_gap;      // of the topology volume over the bound of the relaxed problem
   std::optional<double> size_volume_mm3;  // of SizeOpt on the way
   std::optional<int> struts_left;
   std::optional<double> worst_ratio;  // demand over limit, evaluated from scratch; at most 1 when it holds
@@ -33,7 +34,7 @@ struct Row {
   std::optional<double> peak_mb;      // resident memory of the method's process, problem file included
   std::vector<StageSize> stages;      // of the whole loop: initial, size, topology, geometry
 
-  std::optional<double> gap() const;  // of SizeOpt: (volume - lower bound) / volume
+  std::optional<double> gap() const;  // of SizeOpt: volume / lower bound - 1
 };
 
 nlohmann::json to_json(const Row& row);

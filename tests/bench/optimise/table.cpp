@@ -50,6 +50,8 @@ std::string stage_lines(const Row& row) {
   for (std::size_t i = 0; i < 4; ++i)
     text += fmt::format("{} {} {}/{} {:.0f} mm3", i == 0 ? "" : ",", names[i], row.stages[i].nodes,
                         row.stages[i].struts, row.stages[i].volume_mm3);
+  if (row.relaxed_gap)
+    text += fmt::format("; topology at most {:.1f} % above its bound", 100 * *row.relaxed_gap);
   return text + "\n";
 }
 
