@@ -14,8 +14,9 @@ constexpr int kMostHalfPlanes = 64;
 constexpr int kMostJointHalfPlanes = 8;
 // A proof is looked at in mm and N when its scaled value is positive by this share of its terms.
 constexpr double kPromising = 2e-7;
-// ... and the search goes on until nothing is gained for so many iterations, to give a round figure.
 constexpr int kMostIterations = 40;
+constexpr double kWidestRatio = 1e12;
+constexpr int kRatioSteps = 30;
 
 std::string constraint_of(const DualProof& proof) {
   bool displacement = false, stress = false, balance = false;
@@ -32,13 +33,34 @@ std::string constraint_of(const DualProof& proof) {
   return name;
 }
 
+// The widest limits that the proof still refutes: its value falls with them, and the tolerance on the limits
+// is what widens them.
+double proven_ratio(const FrameProblem& problem, const AreaBox& box, DualProof proof) {
+  for (double multiplier : proof.balance_multipliers)
+    if (multiplier > 0) return 1;
+  const double exact = proof.feasibility_tolerance;
+  const auto refutes = [&](double ratio) {
+    proof.feasibility_tolerance = (1 + exact) * ratio - 1;
+    const DualValue value = dual_value(problem, box, proof);
+    return value.value > kCertain * value.normalisation;
+  };
+  double low = 1, high = 2;
+  while (refutes(high) && high < kWidestRatio) low = high, high *= 2;
+  for (int step = 0; step < kRatioSteps; ++step) {
+    const double middle = (low + high) / 2;
+    (refutes(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
 // Evaluated afresh; none where it proves nothing.
 std::optional<InfeasibilityCertificate> certificate(const FrameProblem& problem, const AreaBox& box,
                                                     DualProof proof) {
   const DualValue value = dual_value(problem, box, proof);
   if (!(value.value > kCertain * value.normalisation) || !std::isfinite(value.value)) return std::nullopt;
-  InfeasibilityCertificate out{std::move(proof), box, value.value, value.normalisation, {}};
+  InfeasibilityCertificate out{std::move(proof), box, value.value, value.normalisation, 1, {}};
   out.constraint = constraint_of(out.proof);
+  out.proven_ratio = proven_ratio(problem, box, out.proof);
   return out;
 }
 

@@ -22,7 +22,10 @@ struct InfeasibilityCertificate {
   DualProof proof;
   AreaBox box;
   double value = 0, normalisation = 0;  // of dual_value
-  std::string constraint;               // "displacement", "stress", "balance", or several of them by "and"
+  // Limits of (2), (3) and (6) this many times as wide are still out of reach by the same proof: what is
+  // reachable lies between it and the best that was found. 1 where balance takes part.
+  double proven_ratio = 1;
+  std::string constraint;  // "displacement", "stress", "balance", or several of them by "and"
 };
 
 struct CertificateRequest {

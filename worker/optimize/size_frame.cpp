@@ -20,6 +20,8 @@ constexpr double kElasticError = 1e-4;
 constexpr double kElasticRoughly = 100;
 // t weighs as much as the whole volume: a smaller barrier to begin with leaves its duals far from central.
 constexpr double kElasticBarrier = 1;
+// A proof that also refutes limits this many times as wide says so.
+constexpr double kWorthSaying = 1.001;
 // The least violation of balance counts as none below this, mm.
 constexpr double kBalanceToleranceMm = 1e-6;
 // A hint is a start when it is at most this far from feasible.
@@ -102,6 +104,8 @@ class Sizing {
     const double used = utilisation(reached.evaluation);
     reached.detail = reached.violated_constraint + " cannot be kept, ";
     reached.detail += proof ? "proven: no radii within their bounds keep the limits" : "not proven";
+    if (proof && proof->proven_ratio > kWorthSaying)
+      reached.detail += fmt::format(", nor {:.4g} times as wide ones", proof->proven_ratio);
     if (reached.violated_constraint != "balance" && std::isfinite(used))
       reached.detail += fmt::format("; best found: {:.4g} times the limit", used);
     if (!how.empty()) reached.detail += fmt::format(" ({})", how);

@@ -32,6 +32,7 @@ json proof_json(const DualProof& proof, bool removable_may_vanish, const DualVal
 json certificate_json(const InfeasibilityCertificate& certificate) {
   json document = proof_json(certificate.proof, false, {certificate.value, certificate.normalisation});
   document["constraint"] = certificate.constraint;
+  document["proven_ratio"] = certificate.proven_ratio;
   return document;
 }
 

@@ -6,8 +6,9 @@
 //    "fields": [{"load_case": index, "displacement_multiplier", "stress_multiplier", "displacements_mm":
 //    [[x,y,z] one a node]}], "balance_multipliers": [one a half plane] or [], "value", "normalisation"}
 //
-// A certificate of infeasibility is one of volume_weight 0 and value > 0, with the "constraint" it is about.
-// Removable: struts that are not of the skin, and those whose min_radius_mm is 0.
+// A certificate of infeasibility is one of volume_weight 0 and value > 0, with the "constraint" it is about
+// and the "proven_ratio": limits that many times as wide are out of reach by it as well. Removable: struts
+// that are not of the skin, and those whose min_radius_mm is 0.
 #pragma once
 
 #include <nlohmann/json.hpp>

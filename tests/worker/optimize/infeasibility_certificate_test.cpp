@@ -43,6 +43,7 @@ TEST(InfeasibilityCertificate, OfAChainIsSharpAtTheLargestForceItCarries) {
     ASSERT_TRUE(proven.has_value()) << share;
     EXPECT_EQ(proven->constraint, "displacement");
     EXPECT_GT(proven->value, 0);
+    EXPECT_NEAR(proven->proven_ratio, share, 1e-5 * share) << "at the upper bound the chain comes no nearer";
     const DualValue again = dual_value(problem, proven->box, proven->proof);
     EXPECT_EQ(again.value, proven->value);
     EXPECT_EQ(again.normalisation, proven->normalisation);

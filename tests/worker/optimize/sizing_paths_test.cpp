@@ -104,6 +104,8 @@ TEST(SizeOptPaths, BestReachableNeedNotBeAtTheUpperBounds) {
   EXPECT_EQ(frame.violated_constraint, "displacement");
   EXPECT_NEAR(frame.evaluation.displacement_ratio, 1.01 / 0.4, 1e-4);
   ASSERT_TRUE(frame.certificate.has_value()) << frame.detail;
+  EXPECT_GT(frame.certificate->proven_ratio, 1);
+  EXPECT_LE(frame.certificate->proven_ratio, frame.evaluation.displacement_ratio);
   EXPECT_NE(frame.detail.find("proven"), std::string::npos);
   EXPECT_EQ(frame.detail.find("not proven"), std::string::npos) << frame.detail;
 }
@@ -210,6 +212,9 @@ TEST(SizeOptPaths, NoCombinationOfLoadsAndLimitsIsWithoutAnAnswer) {
             EXPECT_NE(r->detail.find("cannot be kept"), std::string::npos) << r->detail;
             EXPECT_EQ(r->detail.find("not proven") == std::string::npos, r->certificate.has_value());
             proven += r->certificate.has_value();
+            if (r->certificate && r->violated_constraint != "balance") {
+              EXPECT_LE(r->certificate->proven_ratio, utilisation(evaluation) * (1 + 1e-6));
+            }
           } else {
             ++optimal;
             EXPECT_EQ(violated, "");
