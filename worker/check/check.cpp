@@ -31,6 +31,9 @@ Verdict judge(const ExportedPrinter& result) {
   }
   const Surface outer(outer_mesh);
   claim_mesh(result, outer_mesh, cavity, outer, &verdict);
+  claim_package(result, &verdict);
+  claim_beams(result, &verdict);
+  claim_compact(result, &verdict);
   if (result.solid()) {
     claim_solid(result, outer_mesh, outer, &verdict);
     claim_balance(result, outer_mesh, &verdict);

@@ -16,6 +16,21 @@ void split_surfaces(const ExportedPrinter& result, TriangleMesh* outer, Triangle
 void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, const TriangleMesh& cavity,
                 const Surface& outer, Verdict* verdict);
 
+// Directed edges without their opposite, edges with more than two triangles, triangles with two equal
+// corners.
+struct EdgeCount {
+  std::size_t unmatched = 0;
+  std::size_t crowded = 0;
+  std::size_t degenerate = 0;
+};
+EdgeCount count_edges(const TriangleMesh& mesh);
+
+// skin-frame.3mf, frame-beams.3mf and skin-frame-compact.stl, where the report lists them: the same body, in
+// mm.
+void claim_package(const ExportedPrinter& result, Verdict* verdict);
+void claim_beams(const ExportedPrinter& result, Verdict* verdict);
+void claim_compact(const ExportedPrinter& result, Verdict* verdict);
+
 // A result called solid: the mesh is M, nothing is counted, and there was indeed nothing to hollow.
 void claim_solid(const ExportedPrinter& result, const TriangleMesh& outer_mesh, const Surface& outer,
                  Verdict* verdict);

@@ -219,6 +219,26 @@ ExportedPrinter parse_solution(const json& item) {
   return figures;
 }
 
+// One of the printer's further meshes; files that make no claim of their own are passed over.
+Status read_listed(const std::filesystem::path& path, const json& item, ExportedPrinter* printer,
+                   RunContext& context) {
+  const std::string name = path.filename().string();
+  if (name == "skin-frame-compact.stl") {
+    auto file = read_mesh(path, ReadLimits{}, context);
+    if (!file) return file.error();
+    printer->compact = weld_equal(file->mesh);
+    const json& compact = item.at("compact");
+    printer->compact_triangles = compact.at("triangles").get<std::size_t>();
+    printer->compact_volume_mm3 = compact.at("volume_mm3").get<double>();
+    printer->compact_deviation_mm = compact.at("deviation_mm").get<double>();
+  } else if (name == "skin-frame.3mf" || name == "frame-beams.3mf") {
+    auto package = read_package(path);
+    if (!package) return package.error();
+    (name == "skin-frame.3mf" ? printer->package : printer->beams) = std::move(package).value();
+  }
+  return ok_status();
+}
+
 }  // namespace
 
 TriangleMesh weld_equal(const TriangleMesh& soup) {
@@ -277,6 +297,10 @@ Result<Exported> read_exported(const std::filesystem::path& directory, RunContex
         auto merged = read_mesh(folder / "skin-frame.stl", ReadLimits{}, context);
         if (!merged) return merged.error();
         printer.merged = weld_equal(merged->mesh);
+      }
+      for (const json& file : item.value("files", json::array())) {
+        reading = folder / file.get<std::string>();
+        if (auto read = read_listed(reading, item, &printer, context); !read) return read.error();
       }
       printers.push_back(std::move(printer));
     }

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "worker/check/package.h"
 #include "worker/mesh/triangle_mesh.h"
 #include "worker/run/run_context.h"
 
@@ -81,6 +82,10 @@ struct ExportedPrinter {
   std::size_t solid_triangles = 0;
   ExportedFrame frame;
   std::optional<TriangleMesh> merged;  // vertices welded where equal; absent where the result has no mesh
+  std::optional<TriangleMesh> compact;
+  std::optional<Package> package, beams;  // skin-frame.3mf, frame-beams.3mf
+  std::size_t compact_triangles = 0;
+  double compact_volume_mm3 = 0, compact_deviation_mm = 0;
   bool optimised() const { return termination != "NOT_OPTIMIZED"; }
   bool infeasible() const { return termination == "INFEASIBLE"; }
   bool solid() const { return termination == "SOLID"; }  // thin everywhere: no frame, no frame.json

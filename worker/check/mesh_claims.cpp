@@ -10,35 +10,6 @@
 namespace skinframe::check {
 namespace {
 
-// Directed edges without their opposite, and edges with more than two triangles.
-struct EdgeCount {
-  std::size_t unmatched = 0;
-  std::size_t crowded = 0;
-  std::size_t degenerate = 0;
-};
-
-EdgeCount count_edges(const TriangleMesh& mesh) {
-  EdgeCount count;
-  struct Uses {
-    int along = 0, against = 0;
-  };
-  std::unordered_map<std::uint64_t, Uses> edges;
-  edges.reserve(mesh.triangles.size() * 3 / 2);
-  for (const auto& t : mesh.triangles) {
-    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) ++count.degenerate;
-    for (int k = 0; k < 3; ++k) {
-      const auto from = static_cast<std::uint32_t>(t[k]), to = static_cast<std::uint32_t>(t[(k + 1) % 3]);
-      Uses& uses = edges[std::uint64_t{std::min(from, to)} << 32 | std::max(from, to)];
-      (from < to ? uses.along : uses.against)++;
-    }
-  }
-  for (const auto& [key, uses] : edges) {
-    if (uses.along != uses.against) ++count.unmatched;
-    if (uses.along + uses.against > 2) ++count.crowded;
-  }
-  return count;
-}
-
 TriangleMesh slice(const TriangleMesh& mesh, std::size_t first, std::size_t last) {
   TriangleMesh part{mesh.vertices, {}};
   part.triangles.assign(mesh.triangles.begin() + first, mesh.triangles.begin() + last);
@@ -83,6 +54,28 @@ SkinSample sample_skin_volume(const Surface& outer, const BoundingBox& box, doub
 }
 
 }  // namespace
+
+EdgeCount count_edges(const TriangleMesh& mesh) {
+  EdgeCount count;
+  struct Uses {
+    int along = 0, against = 0;
+  };
+  std::unordered_map<std::uint64_t, Uses> edges;
+  edges.reserve(mesh.triangles.size() * 3 / 2);
+  for (const auto& t : mesh.triangles) {
+    if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) ++count.degenerate;
+    for (int k = 0; k < 3; ++k) {
+      const auto from = static_cast<std::uint32_t>(t[k]), to = static_cast<std::uint32_t>(t[(k + 1) % 3]);
+      Uses& uses = edges[std::uint64_t{std::min(from, to)} << 32 | std::max(from, to)];
+      (from < to ? uses.along : uses.against)++;
+    }
+  }
+  for (const auto& [key, uses] : edges) {
+    if (uses.along != uses.against) ++count.unmatched;
+    if (uses.along + uses.against > 2) ++count.crowded;
+  }
+  return count;
+}
 
 void split_surfaces(const ExportedPrinter& result, TriangleMesh* outer, TriangleMesh* cavity) {
   const TriangleMesh& merged = *result.merged;

@@ -8,12 +8,14 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <new>
 
 #include "worker/export/keep_wall.h"
 #include "worker/export/strut_level_set.h"
 #include "worker/export/thin_out.h"
+#include "worker/export/untangle.h"
 #include "worker/frame/vertex_graph.h"
 #include "worker/skin/distance_grids.h"
 #include "worker/skin/level_set.h"
@@ -50,6 +52,21 @@ Result<double> choose_voxel(const ExportOptions& options, const Skin& skin,
   }
   return voxel;
 }
+
+// Seconds since the last step, under its name.
+class Steps {
+ public:
+  explicit Steps(std::map<std::string, double>* seconds) : seconds_(seconds) {}
+  void done(const char* step) {
+    const auto now = std::chrono::steady_clock::now();
+    (*seconds_)[step] += std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+
+ private:
+  std::map<std::string, double>* seconds_;
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
 
 // The narrow band of M1 from the distance to M: distance + h_S, clamped.
 openvdb::FloatGrid::Ptr m1_level_set(const TriangleMesh& mesh, const Skin& skin, double voxel, double band) {
@@ -99,27 +116,38 @@ Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Fr
                             const RunContext& context) {
   const auto voxel = choose_voxel(options, skin, radii_mm, surface_area(mesh));
   if (!voxel) return voxel.error();
+  PrintableMesh result;
+  result.voxel_mm = *voxel;
+  Steps steps(&result.seconds);
   const double band = kBandVoxels * *voxel;
   auto cavity_grid = m1_level_set(mesh, skin, *voxel, band);
   if (context.cancelled()) return cancelled_error();
+  steps.done("offset");
   auto struts = strut_level_set(frame, radii_mm, *voxel, band);
   if (context.cancelled()) return cancelled_error();
   openvdb::tools::csgDifference(*cavity_grid, *struts);
+  steps.done("struts");
   TriangleMesh cavity = iso_surface(*cavity_grid, 0.0);
   cavity_grid.reset();
   if (context.cancelled()) return cancelled_error();
 
-  PrintableMesh result;
-  result.voxel_mm = *voxel;
   cavity = drop_small_shells(cavity, options.smallest_pocket_mm3, result);
   bool manifold = mend_edges(cavity).manifold;
   if (context.cancelled()) return cancelled_error();
+  steps.done("surface");
   if (manifold && options.max_triangles > 0) {
     thin_out(cavity, options.max_triangles, kThinningInVoxels * *voxel);
   }
+  steps.done("thin_out");
   keep_wall(cavity, mesh, skin, *voxel);
   manifold = manifold && mend_edges(cavity).manifold;  // places rounded to float may fall together
-  if (!manifold) return internal_error("the boundary of the cavity is not closed: try another --voxel");
+  if (context.cancelled()) return cancelled_error();
+  steps.done("keep_wall");
+  result.crossings_left = untangle(cavity, context).crossings_left;
+  if (context.cancelled()) return cancelled_error();
+  steps.done("untangle");
+  if (!manifold || count_bad_edges(cavity) > 0)
+    return internal_error("the boundary of the cavity is not closed: try another --voxel");
   result.cavity_volume_mm3 = signed_volume(cavity);
   result.volume_mm3 = signed_volume(mesh) - result.cavity_volume_mm3;
 

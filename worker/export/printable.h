@@ -9,11 +9,14 @@
 // Guarantees, on the coordinates rounded to float as a binary STL stores them:
 //  1. Every edge has exactly two triangles, in opposite directions (when that holds for M).
 //  2. No triangle has two equal corners.
-//  3. volume_mm3 = volume of M - cavity_volume_mm3, both of the mesh as it is.
+//  3. The cavity's triangles do not cut each other, unless crossings_left says so.
+//  4. volume_mm3 = volume of M - cavity_volume_mm3, both of the mesh as it is.
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "worker/frame/frame.h"
@@ -37,6 +40,8 @@ struct PrintableMesh {
   double voxel_mm = 0.0;
   int pockets = 0;  // cavity pieces that stay
   int pockets_filled = 0;
+  int crossings_left = 0;  // pairs of the cavity's triangles that cut each other; 0 but in rare cases
+  std::map<std::string, double> seconds;  // of the steps
 };
 
 // radii_mm: one a strut of the frame. Errors: kInvalidInput for an option out of range or a grid too large;

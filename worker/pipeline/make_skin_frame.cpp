@@ -79,7 +79,7 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
   report.thin = skin->thin;
   laps.lap("skin");
   if (skin->is_thin_everywhere()) {
-    auto made = make_solid(prepared, *skin, request, job.options, out_dir / printer.id, &report);
+    auto made = make_solid(prepared, *skin, request, job.options, out_dir / printer.id, &report, context);
     if (!made) return made.error();
     laps.lap("write");
     return report;
@@ -124,9 +124,10 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
   auto frame_json = to_json(result.problem, result.radii_mm, result.displacements_mm);
   if (result.certificate) frame_json["certificate"] = certificate_json(*result.certificate);
   if (auto written = write_json(folder / "frame.json", frame_json); !written) return written.error();
+  report.files.push_back("frame.json");
   if (!merged.value()) return report;
   const PrintableMesh& printable = *merged.value();
-  if (auto written = write_printable(printable, prepared, request, folder, &report); !written)
+  if (auto written = write_printable(printable, prepared, request, folder, &report, context); !written)
     return written.error();
   laps.lap("write");
   return report;

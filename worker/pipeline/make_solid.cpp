@@ -8,7 +8,8 @@
 namespace skinframe {
 
 Status make_solid(const PreparedSolid& prepared, const Skin& skin, const PrinterRequest& printer,
-                  const JobOptions& options, const std::filesystem::path& folder, PrinterReport* report) {
+                  const JobOptions& options, const std::filesystem::path& folder, PrinterReport* report,
+                  const RunContext& context) {
   const Solid& solid = prepared.solid;
   report->is_solid = true;
   report->termination = "SOLID";
@@ -48,7 +49,7 @@ Status make_solid(const PreparedSolid& prepared, const Skin& skin, const Printer
   printable.mesh = solid.mesh();
   printable.volume_mm3 = solid.volume_mm3();
   printable.voxel_mm = skin.voxel_mm;
-  return write_printable(printable, prepared, printer, folder, report);
+  return write_printable(printable, prepared, printer, folder, report, context);
 }
 
 }  // namespace skinframe

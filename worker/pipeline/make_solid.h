@@ -7,6 +7,7 @@
 #include "worker/pipeline/pose_problem.h"
 #include "worker/pipeline/prepare_solid.h"
 #include "worker/report/report.h"
+#include "worker/run/run_context.h"
 #include "worker/skin/build_skin.h"
 
 namespace skinframe {
@@ -15,6 +16,7 @@ namespace skinframe {
 // that of the solid; with `require` and a solid that does not stand the report is INFEASIBLE and nothing is
 // written.
 Status make_solid(const PreparedSolid& prepared, const Skin& skin, const PrinterRequest& printer,
-                  const JobOptions& options, const std::filesystem::path& folder, PrinterReport* report);
+                  const JobOptions& options, const std::filesystem::path& folder, PrinterReport* report,
+                  const RunContext& context);
 
 }  // namespace skinframe

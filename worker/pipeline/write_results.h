@@ -4,14 +4,17 @@
 
 #include <filesystem>
 
+#include "worker/frame/frame.h"
 #include "worker/pipeline/prepare_solid.h"
 #include "worker/report/report.h"
+#include "worker/run/run_context.h"
 
 namespace skinframe {
 
-// skin-frame.stl; fills the report's figures of the exported mesh.
+// skin-frame.stl, skin-frame.3mf and skin-frame-compact.stl; with a frame also frame-beams.3mf. Fills the
+// report's figures of the exported mesh and its list of files.
 Status write_printable(const PrintableMesh& printable, const PreparedSolid& prepared,
                        const PrinterRequest& printer, const std::filesystem::path& folder,
-                       PrinterReport* report);
+                       PrinterReport* report, const RunContext& context);
 
 }  // namespace skinframe

@@ -178,6 +178,7 @@ json to_json(const PrinterReport& report) {
               {"warnings", report.warnings},
               {"seconds", report.seconds},
               {"termination", {{"reason", report.termination}, {"detail", report.termination_detail}}}};
+  out["files"] = report.files;
   if (report.thin) out["thin"] = thin_json(*report.thin);
   if (s.balance_margin_mm) out["balance_margin_mm"] = *s.balance_margin_mm;
   add_bounds(result, out);
@@ -186,6 +187,11 @@ json to_json(const PrinterReport& report) {
   if (!result.violated_constraint.empty()) out["violated_constraint"] = result.violated_constraint;
   if (report.voxel_mm) {
     out["voxel_mm"] = *report.voxel_mm;
+    out["triangles"] = report.triangles;
+    if (report.compact)
+      out["compact"] = {{"triangles", report.compact->triangles},
+                        {"volume_mm3", report.compact->volume_mm3},
+                        {"deviation_mm", report.compact->deviation_mm}};
     out["printed_volume_mm3"] = s.printed_volume_mm3;
     out["printed_ratio"] = s.printed_ratio;
     out["weight_g"] = s.weight_g;

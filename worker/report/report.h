@@ -58,6 +58,12 @@ struct Statistics {
 };
 nlohmann::json to_json(const Statistics& statistics);
 
+// Of skin-frame-compact.stl.
+struct CompactFacts {
+  std::size_t triangles = 0;
+  double volume_mm3 = 0, deviation_mm = 0;  // deviation from skin-frame.stl
+};
+
 // Everything that is known when one printer's part ends, by result or by a bound that cannot be kept.
 struct PrinterReport {
   std::string printer, material;
@@ -73,6 +79,9 @@ struct PrinterReport {
   std::optional<ThinParts> thin;   // once the skin is built
   bool is_solid = false;           // thin everywhere: printed as it is, without a frame
   std::optional<double> voxel_mm;  // of the exported mesh
+  std::size_t triangles = 0;       // of the exported mesh
+  std::optional<CompactFacts> compact;
+  std::vector<std::string> files;  // in the printer's folder
   std::vector<std::string> warnings;
   std::map<std::string, double> seconds;
 };

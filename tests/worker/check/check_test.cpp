@@ -126,6 +126,33 @@ TEST_F(CheckTest, FalseVolumesAndWeightsAreSeen) {
       Names("no volume rises from stage to stage"));
 }
 
+TEST_F(CheckTest, APackageOfAnotherBodyOrUnitIsSeen) {
+  EXPECT_THAT(denied([](const fs::path& copy) {
+                fs::copy_file(copy / kPrinter / "frame-beams.3mf", copy / kPrinter / "skin-frame.3mf",
+                              fs::copy_options::overwrite_existing);
+              }),
+              Names("skin-frame.3mf is the mesh"));
+  EXPECT_THAT(denied([](const fs::path& copy) {
+                fs::copy_file(copy / kPrinter / "skin-frame.3mf", copy / kPrinter / "frame-beams.3mf",
+                              fs::copy_options::overwrite_existing);
+              }),
+              Names("frame-beams.3mf is the frame"));
+  const auto broken =
+      denied([](const fs::path& copy) { fs::resize_file(copy / kPrinter / "skin-frame.3mf", 5000); });
+  ASSERT_EQ(broken.size(), 1u);
+  EXPECT_NE(broken[0].find("skin-frame.3mf"), std::string::npos) << broken[0];
+}
+
+TEST_F(CheckTest, ACompactMeshThatIsFarOffOrMiscountedIsSeen) {
+  EXPECT_THAT(denied_report([](json& p) { p["compact"]["deviation_mm"] = 0.0; }),
+              Names("compact mesh is near the full one"));
+  EXPECT_THAT(denied_report([](json& p) { p["compact"]["triangles"] = 7; }), Names("compact mesh"));
+  EXPECT_THAT(denied_report([](json& p) {
+                p["compact"]["volume_mm3"] = p["compact"]["volume_mm3"].get<double>() * 1.01;
+              }),
+              Names("compact mesh"));
+}
+
 TEST_F(CheckTest, AStrutThinnerThanThePrinterCanIsSeen) {
   EXPECT_THAT(denied_frame([](json& frame) { frame["struts"][3]["radius_mm"] = 0.4; }), Names("radii"));
 }

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Takes out the few places where a level set's surface, thinned and rounded to floats, cuts itself.
+//
+// The corners of triangles that cross go half way to the mean of their neighbours, round by round and in a
+// growing neighbourhood, until none cross. A corner moves by less than its edges are long; the connections
+// stay, so a closed manifold stays one. Coordinates stay exact floats.
+#pragma once
+
+#include "worker/mesh/triangle_mesh.h"
+#include "worker/run/run_context.h"
+
+namespace skinframe {
+
+struct Untangling {
+  int crossings_found = 0;  // pairs of triangles
+  int crossings_left = 0;   // 0 but where the rounds did not do
+};
+
+Untangling untangle(TriangleMesh& mesh, const RunContext& context);
+
+}  // namespace skinframe
