@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <queue>
 
@@ -123,6 +124,28 @@ std::vector<double> edge_length_field(const TriangleMesh& mesh, double finger_ed
   for (std::size_t v = 0; v < length.size(); ++v) length[v] = 1.0 / std::sqrt(density[v]);
   grade(length, mesh, graph);
   return length;
+}
+
+void weigh_by_stress(const TriangleMesh& mesh, const StressMap& stress, double finger_edge,
+                     std::vector<double>& length) {
+  const auto areas = vertex_areas(mesh);
+  std::vector<double> logarithm(areas.size(), std::numeric_limits<double>::quiet_NaN());
+  double sum = 0.0, area = 0.0;
+  for (std::size_t v = 0; v < areas.size(); ++v) {
+    const auto s = stress.von_mises_mpa_at(mesh.vertices[v]);
+    if (!s || !(*s > 0.0)) continue;
+    logarithm[v] = std::log(*s);
+    sum += areas[v] * logarithm[v];
+    area += areas[v];
+  }
+  if (!(area > 0.0)) return;
+  for (std::size_t v = 0; v < areas.size(); ++v) {
+    if (std::isnan(logarithm[v])) continue;
+    const double factor = std::clamp(std::exp(kStressExponent * (logarithm[v] - sum / area)),
+                                     1.0 / kMostStressFactor, kMostStressFactor);
+    length[v] = std::min(length[v] / std::sqrt(factor), finger_edge);
+  }
+  grade(length, mesh, vertex_graph(mesh));
 }
 
 double node_demand(const TriangleMesh& mesh, const std::vector<double>& length) {

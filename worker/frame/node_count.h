@@ -14,6 +14,7 @@
 
 #include "worker/mesh/triangle_mesh.h"
 #include "worker/run/result.h"
+#include "worker/stress/stress_map.h"
 
 namespace skinframe {
 
@@ -39,6 +40,15 @@ constexpr double kSmoothingInThicknesses = 4.0;
 constexpr double kEdgeGrading = 0.6;
 std::vector<double> edge_length_field(const TriangleMesh& inner_surface, double finger_edge_mm,
                                       double skin_thickness_mm);
+
+// Node density follows the stress too (Wang et al. 2013, section 4.2). Stress is very skewed, so it is
+// compressed: a factor on the density, (s / s0)^kStressExponent within [1 / kMostStressFactor,
+// kMostStressFactor], s0 the geometric mean over the area; 1 where no stress is known. Edges become
+// a / sqrt(factor), a_finger at most.
+constexpr double kStressExponent = 0.25;
+constexpr double kMostStressFactor = 2.0;
+void weigh_by_stress(const TriangleMesh& inner_surface, const StressMap& stress, double finger_edge_mm,
+                     std::vector<double>& edge_length_mm);
 
 // The integral above, vertex areas being a third of the triangles about; not rounded.
 double node_demand(const TriangleMesh& inner_surface, const std::vector<double>& edge_length_mm);

@@ -3,11 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "worker/frame/base_contact.h"
+#include "worker/frame/follow_skin.h"
 #include "worker/frame/internal_nodes.h"
 #include "worker/frame/internal_struts.h"
 #include "worker/frame/piece_joints.h"
@@ -36,7 +39,8 @@ struct Piece {
 double lowest_z(const TriangleMesh& mesh) { return bounding_box(mesh).min.z(); }
 
 // The pieces that get a frame, the largest first; what is left out is told in the warnings.
-std::vector<Piece> choose_pieces(const Skin& skin, double finger_edge, std::vector<std::string>& warnings) {
+std::vector<Piece> choose_pieces(const Skin& skin, double finger_edge, const StressMap* stress,
+                                 std::vector<std::string>& warnings) {
   std::vector<Piece> pieces;
   int left_out = 0;
   double volume = 0.0;
@@ -44,6 +48,7 @@ std::vector<Piece> choose_pieces(const Skin& skin, double finger_edge, std::vect
     Piece piece;
     piece.edge_length_mm = edge_length_field(surface, finger_edge, skin.thickness_mm);
     piece.demand = node_demand(surface, piece.edge_length_mm);
+    if (stress != nullptr) weigh_by_stress(surface, *stress, finger_edge, piece.edge_length_mm);
     if (!pieces.empty() && (piece.demand < kLeastPieceNodes || pieces.size() == kMostPieces)) {
       ++left_out;
       volume += signed_volume(surface);
@@ -114,14 +119,23 @@ void pin_joints(std::vector<Piece>& pieces, double radius, const Skin& skin) {
   }
 }
 
-// From the coarse surface onto the fine field's M1, by a Newton step that is not let far.
-Eigen::Vector3d onto_m1(const Eigen::Vector3d& p, const Skin& skin) {
-  const Eigen::Vector3d gradient = skin.field.gradient(p);
-  const double slope = gradient.squaredNorm();
-  if (slope < 0.25) return p;  // near the medial axis
-  const double off = skin.field.at(p) + skin.thickness_mm;
-  const double reach = 0.3 * skin.field.coarse_voxel_mm();
-  return p - std::clamp(off, -reach, reach) / std::sqrt(slope) * gradient / std::sqrt(slope);
+// From the coarse surface onto the fine field's M1, not far.
+Eigen::Vector3d settle(const Eigen::Vector3d& p, const Skin& skin) {
+  const Eigen::Vector3d step = onto_m1(p, skin) - p;
+  const double reach = 0.5 * skin.field.coarse_voxel_mm();
+  return p + std::min(1.0, reach / std::max(step.norm(), 1e-12)) * step;
+}
+
+// Pins and what stands on the base contact stay where they are when the triangles are made round.
+std::vector<char> held_nodes(const TriangleMesh& mesh, const Piece& piece, double contact_z) {
+  std::vector<char> held(mesh.vertices.size(), 0);
+  for (std::size_t v = 0; v < held.size(); ++v) {
+    const Eigen::Vector3d& p = mesh.vertices[v];
+    held[v] = p.z() <= contact_z + kContactSlackMm ||
+              std::any_of(piece.sampling.pins.begin(), piece.sampling.pins.end(),
+                          [&](int pin) { return piece.surface.vertices[pin] == p; });
+  }
+  return held;
 }
 
 void add_skin_piece(Frame& frame, const TriangleMesh& mesh) {
@@ -138,11 +152,16 @@ void add_skin_piece(Frame& frame, const TriangleMesh& mesh) {
   }
 }
 
+struct SkinSample {
+  Frame frame;
+  int nodes_sampled = 0;
+};
+
 // Skin nodes, their triangulation and the joints between pieces. Pieces that cannot be joined are taken out
 // of `pieces`, and all is done again without them.
-Result<Frame> sample_skin(std::vector<Piece>& pieces, const Skin& skin, const FrameOptions& options,
-                          int total, double contact_height, std::vector<std::string>& warnings,
-                          const RunContext& context) {
+Result<SkinSample> sample_skin(std::vector<Piece>& pieces, const Skin& skin, const FrameOptions& options,
+                               int total, double contact_height, std::vector<std::string>& warnings,
+                               const RunContext& context) {
   while (true) {
     share_nodes(pieces, total);
     double lowest = lowest_z(pieces[0].surface);
@@ -154,18 +173,33 @@ Result<Frame> sample_skin(std::vector<Piece>& pieces, const Skin& skin, const Fr
     pin_contact(pieces, contact_z, kPinSpacingInEdges * typical);
     pin_joints(pieces, options.strut_radius_mm, skin);
 
-    Frame frame;
+    SkinSample sample;
+    Frame& frame = sample.frame;
+    int struts_left = 0;
     std::vector<int> piece_of;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       pieces[i].sampling.edge_length_mm = pieces[i].edge_length_mm;
       auto mesh = triangulate_piece(pieces[i].surface, pieces[i].sampling, context);
       if (!mesh) return mesh.error();
-      for (auto& p : mesh.value().vertices) p = onto_m1(p, skin);
+      const std::vector<char> held = held_nodes(*mesh, pieces[i], contact_z);
+      for (auto& p : mesh.value().vertices) p = settle(p, skin);
+      sample.nodes_sampled += static_cast<int>(mesh->vertices.size());
+      const auto followed = follow_skin(mesh.value(), held, skin, context);
+      if (!followed) return followed.error();
+      struts_left += followed->edges_left;
       add_skin_piece(frame, *mesh);
       piece_of.resize(frame.nodes_mm.size(), static_cast<int>(i));
     }
     const auto joined = join_pieces(frame, piece_of, options.strut_radius_mm, skin);
-    if (std::all_of(joined.begin(), joined.end(), [](bool j) { return j; })) return frame;
+    if (std::all_of(joined.begin(), joined.end(), [](bool j) { return j; })) {
+      if (struts_left > 0)
+        warnings.push_back(fmt::format(
+            "{} skin struts leave the inner surface of the skin by more than {:.2g} mm outwards or "
+            "{:.2g} mm inwards and could not be divided further",
+            struts_left, kOutwardInThicknesses * skin.thickness_mm,
+            kInwardInThicknesses * skin.thickness_mm));
+      return sample;
+    }
     std::vector<Piece> kept;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       if (joined[i]) {
@@ -196,19 +230,31 @@ void measure_chords(SampledFrame& sampled, const Skin& skin) {
   const Frame& frame = sampled.frame;
   for (const Strut& s : frame.struts) {
     if (!s.is_skin) continue;
-    const Eigen::Vector3d a = frame.nodes_mm[s.a], step = frame.nodes_mm[s.b] - a;
-    double outermost = -skin.thickness_mm;
-    for (int i = 1; i < 20; ++i) {
-      const double d = skin.field.at(a + step * (i / 20.0));
-      outermost = std::max(outermost, d);
-      sampled.worst_skin_strut_chord_mm =
-          std::max(sampled.worst_skin_strut_chord_mm, std::abs(d + skin.thickness_mm));
-    }
-    sampled.skin_struts_outside += outermost > 0.0;
+    const auto [outward, inward] = chord_deviation(frame.nodes_mm[s.a], frame.nodes_mm[s.b], skin);
+    sampled.worst_outward_chord_mm = std::max(sampled.worst_outward_chord_mm, outward);
+    sampled.worst_inward_chord_mm = std::max(sampled.worst_inward_chord_mm, inward);
+    sampled.skin_struts_outside += outward > skin.thickness_mm;
   }
 }
 
 }  // namespace
+
+TriangleAngles measure_angles(const Frame& frame) {
+  if (frame.skin_triangles.empty()) return {};
+  std::vector<double> least;
+  for (const auto& t : frame.skin_triangles) {
+    double angle = 180.0;
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d& p = frame.nodes_mm[t[k]];
+      const Eigen::Vector3d u = frame.nodes_mm[t[(k + 1) % 3]] - p, v = frame.nodes_mm[t[(k + 2) % 3]] - p;
+      angle = std::min(angle, std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi);
+    }
+    least.push_back(angle);
+  }
+  std::sort(least.begin(), least.end());
+  const double mean = std::accumulate(least.begin(), least.end(), 0.0) / static_cast<double>(least.size());
+  return {mean, least[least.size() / 100], least.front()};
+}
 
 Status FrameOptions::validate() const {
   const auto outside = [](const char* name, double value, double low, double high) {
@@ -243,20 +289,22 @@ Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options,
   }
   SampledFrame sampled;
   sampled.finger_edge_mm = finger_edge_mm(options.plate, skin.thickness_mm);
-  auto pieces = choose_pieces(skin, sampled.finger_edge_mm, sampled.warnings);
+  auto pieces = choose_pieces(skin, sampled.finger_edge_mm, options.stress, sampled.warnings);
   const auto total = wanted_nodes(pieces, options);
   if (!total) return total.error();
   sampled.skin_nodes_requested = *total;
 
   const double contact_height = skin.plate_z_mm + skin.thickness_mm + options.contact_tolerance_mm;
-  auto frame = sample_skin(pieces, skin, options, *total, contact_height, sampled.warnings, context);
-  if (!frame) return frame.error();
-  sampled.frame = std::move(*frame);
+  auto sample = sample_skin(pieces, skin, options, *total, contact_height, sampled.warnings, context);
+  if (!sample) return sample.error();
+  sampled.frame = std::move(sample.value().frame);
+  sampled.skin_nodes_sampled = sample->nodes_sampled;
   sampled.pieces = static_cast<int>(pieces.size());
   sampled.mean_skin_edge_mm = mean_skin_edge(sampled.frame);
-  if (sampled.frame.skin_node_count != *total) {
-    sampled.warnings.push_back(fmt::format("{} skin nodes instead of {}: the shape of the body needs them",
-                                           sampled.frame.skin_node_count, *total));
+  if (sampled.skin_nodes_sampled != *total) {
+    sampled.warnings.push_back(
+        fmt::format("{} skin nodes sampled instead of {}: the shape of the body needs them",
+                    sampled.skin_nodes_sampled, *total));
   }
 
   const double margin = std::max(2.0 * options.strut_radius_mm, kMarginInEdges * sampled.mean_skin_edge_mm);
@@ -272,6 +320,7 @@ Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options,
   sampled.contact_nodes =
       contact_nodes(sampled.frame.nodes_mm, sampled.frame.skin_node_count, contact_height + kContactSlackMm);
   measure_chords(sampled, skin);
+  sampled.angles = measure_angles(sampled.frame);
   if (context.cancelled()) return cancelled_error();
   return sampled;
 }

@@ -2,12 +2,14 @@
 // The initial frame (Wang et al. 2013, section 4.2): skin nodes on M1 with their triangulation, evenly spread
 // internal nodes, nearest-neighbour struts that stay inside M1.
 //
-// Skin nodes: M1 is collapsed to the wanted count, then relaxed (edge flips, weighted Lloyd, projection). The
-// base contact is kept: nodes there stay there, its rim is followed, and three nodes not in line stand on it
-// at least. Internal nodes: Lloyd on the voxels deeper than a margin below M1. Default count: those that the
-// spacing of the skin edges asks for, at most 0.35 of the skin nodes (the paper's frames have 0.12 to 0.44).
-// Internal struts: from each internal node to its nearest nodes, where the strut with the body radius fits
-// (required_depth_mm in convex_region.h). A strut that does not fit is not made.
+// Skin nodes: M1 is collapsed to the wanted count, then relaxed and fitted to the density
+// (triangulate_piece.h), which follows curvature and, when a map is given, the stress of the solid
+// (node_count.h). The base contact is kept: nodes there stay there, its rim is followed, and three nodes not
+// in line stand on it at least. Then struts that leave M1 too far are divided (follow_skin.h): the nodes
+// added there are skin nodes too. Internal nodes: Lloyd on the voxels deeper than a margin below M1. Default
+// count: those that the spacing of the skin edges asks for, at most 0.35 of the skin nodes (the paper's
+// frames have 0.12 to 0.44). Internal struts: from each internal node to its nearest nodes, where the strut
+// with the body radius fits (required_depth_mm in convex_region.h). A strut that does not fit is not made.
 // Pieces of M1: each is a component of the triangulation. Pieces too small for a triangulation, and pieces
 // that no strut through the solid neck can join to the largest, stay hollow without a frame; a warning says
 // so.
@@ -15,7 +17,7 @@
 // Guarantees:
 //  1. frame.h's invariants; the skin triangulation is closed, edge-manifold, outward, of the genus of M1's
 //  kept pieces.
-//  2. As many skin nodes as asked for, unless the topology of M1 needs more (then a warning).
+//  2. As many skin nodes sampled as asked for, unless the topology of M1 needs more (then a warning).
 //  3. The frame is connected: every node has a path of struts to every contact node. No isolated node.
 //  4. Same input and seed, same frame, at any thread count.
 #pragma once
@@ -28,6 +30,7 @@
 #include "worker/frame/node_count.h"
 #include "worker/run/run_context.h"
 #include "worker/skin/build_skin.h"
+#include "worker/stress/stress_map.h"
 
 namespace skinframe {
 
@@ -38,19 +41,29 @@ struct FrameOptions {
   double strut_radius_mm = 0.5;       // eta: struts are tested against M1 with this radius, > 0
   double contact_tolerance_mm = 1.0;  // contact = M within this of its lowest plane, > 0
   int neighbours = 9;                 // nearest nodes tried from each internal node, [1, 64]
+  const StressMap* stress = nullptr;  // none: the density follows curvature alone
   Status validate() const;
 };
+
+// Of the least angle of each skin triangle, in degrees.
+struct TriangleAngles {
+  double mean = 0.0, first_percentile = 0.0, least = 0.0;
+};
+TriangleAngles measure_angles(const Frame& frame);
 
 struct SampledFrame {
   Frame frame;
   std::vector<int>
       contact_nodes;             // skin nodes above the base contact (widened when it held fewer than three)
   int skin_nodes_requested = 0;  // by the option or by the count rule
+  int skin_nodes_sampled = 0;    // before struts were divided; frame.skin_node_count is after
   double finger_edge_mm = 0.0;
   double mean_skin_edge_mm = 0.0;
-  double worst_skin_strut_chord_mm = 0.0;  // furthest that the axis of a skin strut stands from M1
-  int skin_struts_outside = 0;             // skin struts whose axis leaves M
-  int pieces = 0;                          // of M1 that have a frame
+  double worst_outward_chord_mm = 0.0;  // furthest that the axis of a skin strut stands outside of M1,
+  double worst_inward_chord_mm = 0.0;   // and below it
+  int skin_struts_outside = 0;          // skin struts whose axis leaves M
+  TriangleAngles angles;
+  int pieces = 0;  // of M1 that have a frame
   std::vector<std::string> warnings;
 };
 

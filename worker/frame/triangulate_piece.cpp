@@ -6,15 +6,15 @@
 #include <CGAL/AABB_tree.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
-#include <CGAL/boost/graph/Euler_operations.h>
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <new>
-#include <numbers>
 
+#include "worker/frame/cvt_energy.h"
+#include "worker/frame/flips.h"
 #include "worker/frame/half_edge.h"
 #include "worker/frame/point_tree.h"
 
@@ -25,8 +25,12 @@ using Vertex = HalfEdgeMesh::Vertex_index;
 using Primitive = CGAL::AABB_face_graph_triangle_primitive<HalfEdgeMesh>;
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
-constexpr int kRounds = 60;
-constexpr int kRoundsBeforeRim = 10;      // first even, then on the rim
+constexpr int kEvenRounds = 10;     // first even,
+constexpr int kRimRounds = 10;      // then on the rim,
+constexpr int kCvtIterations = 50;  // then to the density
+constexpr int kRoundingRounds = 2;  // and towards round triangles
+constexpr int kFlipSweepsAfterCvt = 8;
+constexpr double kOnRimMm = 1e-6;         // absolute: rounding
 constexpr double kOntoRim = 0.35;         // in wanted edges: any node this near to the rim goes onto it
 constexpr double kCrowdsNeighbour = 0.3;  // in wanted edges
 constexpr double kCrowdsPin = 0.6;        // in wanted edges
@@ -42,36 +46,6 @@ std::vector<Eigen::Vector3d> rim_points(const HalfEdgeMesh& mesh, double contact
     rim.push_back(a + (contact_z - a.z()) / (b.z() - a.z()) * (b - a));
   }
   return rim;
-}
-
-double angle_at(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r) {
-  return std::atan2((q - p).cross(r - p).norm(), (q - p).dot(r - p));
-}
-
-// Flips edges whose opposite angles sum to more than pi, where that neither folds the surface nor doubles an
-// edge.
-void flip_to_delaunay(HalfEdgeMesh& mesh) {
-  for (int sweep = 0; sweep < 5; ++sweep) {
-    bool changed = false;
-    for (auto e : mesh.edges()) {
-      const auto h = mesh.halfedge(e), o = mesh.opposite(h);
-      const Vertex va = mesh.source(h), vb = mesh.target(h);
-      const Vertex vc = mesh.target(mesh.next(h)), vd = mesh.target(mesh.next(o));
-      if (vc == vd || mesh.halfedge(vc, vd).is_valid()) continue;
-      if (mesh.degree(va) <= 3 || mesh.degree(vb) <= 3) continue;
-      const Eigen::Vector3d a = to_eigen(mesh.point(va)), b = to_eigen(mesh.point(vb)),
-                            c = to_eigen(mesh.point(vc)), d = to_eigen(mesh.point(vd));
-      if (angle_at(c, a, b) + angle_at(d, a, b) <= std::numbers::pi + 1e-3) continue;
-      const Eigen::Vector3d left = (b - a).cross(c - a), right = (d - a).cross(b - a), mean = left + right;
-      const Eigen::Vector3d near_b = (d - c).cross(b - c), near_a = (a - c).cross(d - c);
-      const double before = left.dot(right) / (left.norm() * right.norm() + 1e-30);
-      const double after = near_a.dot(near_b) / (near_a.norm() * near_b.norm() + 1e-30);
-      if (after < std::min(0.3, before - 1e-6) || !(near_a.dot(mean) * near_b.dot(mean) > 0.0)) continue;
-      CGAL::Euler::flip_edge(h, mesh);
-      changed = true;
-    }
-    if (!changed) return;
-  }
 }
 
 // The weighted centroid of the triangles about v, moved back into the tangent plane.
@@ -106,6 +80,16 @@ class Relaxation {
         pins_(std::move(pins)) {
     tree_.insert(faces(surface).begin(), faces(surface).end(), surface);
     tree_.accelerate_distance_queries();
+    samples_.weights.assign(surface.number_of_vertices(), 0.0);
+    for (auto v : surface.vertices()) samples_.points.push_back(to_eigen(surface.point(v)));
+    for (auto f : surface.faces()) {
+      const auto h = surface.halfedge(f);
+      const Vertex corners[3] = {surface.source(h), surface.target(h), surface.target(surface.next(h))};
+      const Eigen::Vector3d& a = samples_.points[corners[0]];
+      const double area =
+          0.5 * (samples_.points[corners[1]] - a).cross(samples_.points[corners[2]] - a).norm();
+      for (const Vertex v : corners) samples_.weights[v] += area / (3.0 * std::pow(edge_length[v], 4));
+    }
   }
 
   void round(HalfEdgeMesh& mesh, NodeTraitsMap traits, bool onto_rim) const {
@@ -121,7 +105,25 @@ class Relaxation {
     }
   }
 
+  // By L-BFGS on the energy of the tessellation; pinned nodes and those on the rim stay.
+  void follow_density(HalfEdgeMesh& mesh, NodeTraitsMap traits, const RunContext& context) const {
+    std::vector<Eigen::Vector3d> sites;
+    std::vector<char> held;
+    for (auto v : mesh.vertices()) {
+      sites.push_back(to_eigen(mesh.point(v)));
+      held.push_back(traits[v].pinned || on_rim(sites.back()));
+    }
+    minimise_cvt(samples_, held, kCvtIterations, context, sites);
+    for (auto v : mesh.vertices())
+      if (!held[v]) project(mesh, traits, v, sites[v]);
+    for (int sweep = 0; sweep < kFlipSweepsAfterCvt; ++sweep) flip_to_delaunay(mesh);
+  }
+
  private:
+  bool on_rim(const Eigen::Vector3d& p) const {
+    return !rim_.empty() && (rim_.point(rim_.nearest(p)) - p).norm() < kOnRimMm;
+  }
+
   void project(HalfEdgeMesh& mesh, NodeTraitsMap traits, Vertex v, const Eigen::Vector3d& p) const {
     const auto [point, face] = tree_.closest_point_and_primitive(to_cgal(p));
     mesh.point(v) = point;
@@ -153,6 +155,7 @@ class Relaxation {
   const std::vector<double>& edge_length_;
   double contact_z_;
   PointTree rim_, pins_;
+  WeightedSamples samples_;
   Tree tree_;
 };
 
@@ -222,10 +225,13 @@ Result<TriangleMesh> triangulate_piece(const TriangleMesh& piece, const PieceSam
     std::vector<Eigen::Vector3d> pins;
     for (int pin : sampling.pins) pins.push_back(piece.vertices[pin]);
     const Relaxation relaxation(*surface, edge_length, sampling.contact_z_mm, std::move(pins));
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kEvenRounds + kRimRounds; ++round) {
       if (context.cancelled()) return cancelled_error();
-      relaxation.round(mesh, traits, round >= kRoundsBeforeRim);
+      relaxation.round(mesh, traits, round >= kEvenRounds);
     }
+    relaxation.follow_density(mesh, traits, context);
+    if (context.cancelled()) return cancelled_error();
+    for (int round = 0; round < kRoundingRounds; ++round) relaxation.round(mesh, traits, true);
     flip_to_delaunay(mesh);
     return to_triangles(mesh);
   } catch (const std::bad_alloc&) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One piece of M1 with some 100 000 triangles becomes a triangulation of a few hundred skin nodes.
 //
-// Collapse of the edge that is shortest against the wanted length, down to the count; then rounds of edge
-// flips (Delaunay), weighted Lloyd steps (a node goes to the centroid of its triangles, weighted by area /
-// a^4: the density whose centroidal tessellation has edges of length a) and projection to M1. Neither step
-// changes the topology, so the result is closed and edge-manifold as the piece is, with its genus. An
-// unconstrained clustering dual was not (m).
+// Collapse of the edge that is shortest against the wanted length, down to the count; rounds of edge flips
+// (Delaunay), weighted Lloyd steps (a node goes to the centroid of its triangles, weighted by area / a^4) and
+// projection to M1; then L-BFGS on the energy of the restricted Voronoi tessellation (cvt_energy.h), flips,
+// and two more rounds. README.md says why both. No step changes the topology, so the result is closed and
+// edge-manifold as the piece is, with its genus. An unconstrained clustering dual was not (m).
 #pragma once
 
 #include <vector>

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Skin struts follow the skin: an edge of the skin triangulation whose chord leaves M1 too far is flipped or
+// divided until it does not, so that a strut that the mechanics counts is a strut that is printed.
+//
+// An edge that deviates is first flipped, where the other diagonal of its two triangles deviates less and
+// keeps their angles. What still deviates is divided, the worst first: a node at its middle, taken to M1, and
+// its two triangles become four; then Delaunay flips about, which never make an edge that deviates, and
+// rounds that move nodes along M1 where that widens the least angle about. The mesh stays closed,
+// edge-manifold and of its genus.
+#pragma once
+
+#include "worker/frame/frame.h"
+#include "worker/run/run_context.h"
+#include "worker/skin/build_skin.h"
+
+namespace skinframe {
+
+// How far the axis of a skin strut may stand from M1, absolute, both as shares of h_S. Outwards half of the
+// skin: an axis never leaves M, and a strut of the least radius is printed whole. Inwards nothing is lost to
+// the print, so there only the coarse is mended.
+inline constexpr double kOutwardInThicknesses = 0.9;
+inline constexpr double kInwardInThicknesses = 2.0;
+// Shorter edges are not divided.
+inline constexpr double kShortestDividedInThicknesses = 2.0;
+
+// Furthest that the segment a-b stands outside of M1 (towards M) and below it, mm, each >= 0.
+struct ChordDeviation {
+  double outward_mm = 0.0;
+  double inward_mm = 0.0;
+};
+ChordDeviation chord_deviation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Skin& skin);
+
+// A point of M1 near to p, by Newton steps in the distance field; p itself on the medial axis.
+Eigen::Vector3d onto_m1(const Eigen::Vector3d& p, const Skin& skin);
+
+struct SkinFollowing {
+  int nodes_added = 0;
+  int edges_flipped = 0;
+  int edges_left = 0;  // that still deviate: too short to divide, or beyond the bound on nodes
+};
+
+// Vertices keep their numbers, those that are held (one a vertex) their places; new ones come after. At most
+// as many nodes again as the mesh has.
+Result<SkinFollowing> follow_skin(TriangleMesh& mesh, const std::vector<char>& held, const Skin& skin,
+                                  const RunContext& context);
+
+}  // namespace skinframe
