@@ -29,7 +29,8 @@ constexpr double kWorthAFlip = 0.8;          // of the deviation before
 constexpr double kLeastFlippedAngle = 22.0;  // degrees, of the two triangles after such a flip
 constexpr double kTurnCosine = 0.7;          // of the normal at a node that moves
 constexpr double kOnM1InVoxels = 0.5;
-constexpr double kLeastShareOfEdge = 0.2;  // a new node's distance from both ends
+constexpr double kLeastDividedAngle = 0.1;  // radians, at the nodes across from a new one
+constexpr double kLeastShareOfEdge = 0.2;   // a new node's distance from both ends
 constexpr int kBisections = 20;
 
 class Following {
@@ -38,7 +39,8 @@ class Following {
     ratio_ = mesh_.add_property_map<Edge, double>("e:ratio", 0.0).first;
     stuck_ = mesh_.add_property_map<Edge, bool>("e:stuck", false).first;
     for (auto e : mesh_.edges()) measure(e);
-    most_nodes_ = 2 * mesh_.number_of_vertices();
+    most_nodes_ =
+        static_cast<std::size_t>((1.0 + kMostAdded) * static_cast<double>(mesh_.number_of_vertices()));
   }
 
   bool flip_deviating() {
@@ -125,10 +127,11 @@ class Following {
   std::pair<Vertex, Vertex> others(Halfedge h) const {
     return {mesh_.target(mesh_.next(h)), mesh_.target(mesh_.next(mesh_.opposite(h)))};
   }
-  double ratio_between(Vertex a, Vertex b) const {
-    const auto [outward, inward] = chord_deviation(at(a), at(b), skin_);
+  double ratio_at(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const {
+    const auto [outward, inward] = chord_deviation(a, b, skin_);
     return std::max(outward / kOutwardInThicknesses, inward / kInwardInThicknesses) / skin_.thickness_mm;
   }
+  double ratio_between(Vertex a, Vertex b) const { return ratio_at(at(a), at(b)); }
   void measure(Edge e) {
     const Halfedge h = mesh_.halfedge(e);
     ratio_[e] = ratio_between(mesh_.source(h), mesh_.target(h));
@@ -184,22 +187,24 @@ class Following {
     const Eigen::Vector3d c = at(vc), d = at(vd);
     const Eigen::Vector3d left = (b - a).cross(c - a), right = (d - a).cross(b - a);
     const Eigen::Vector3d normal = (left.normalized() + right.normalized()).normalized();
-    // A new triangle may turn away from the one it is cut from where it then looks out of M1 as it should.
-    const auto faces_out = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r,
-                               const Eigen::Vector3d& before) {
-      const Eigen::Vector3d turned = (q - p).cross(r - p);
-      return turned.dot(before) > 0.0 || turned.dot(skin_.field.gradient((p + q + r) / 3.0)) > 0.0;
+    // How much is amiss: lengths of what deviates, by how far. It must become less.
+    const auto amiss = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+      return std::max(0.0, ratio_at(p, q) - 1.0) * (q - p).norm();
     };
+    const double before = amiss(a, b);
     const auto fits = [&](const Eigen::Vector3d& p) {
       if (!p.allFinite() || std::abs(skin_.field.at(p) + skin_.thickness_mm) > kOnM1InVoxels * skin_.voxel_mm)
         return false;
       if (std::min((p - a).norm(), (p - b).norm()) < kLeastShareOfEdge * length) return false;
-      return faces_out(a, p, c, left) && faces_out(p, b, c, left) && faces_out(a, d, p, right) &&
-             faces_out(d, b, p, right);
+      return (p - a).cross(c - a).dot(left) > 0.0 && (b - p).cross(c - p).dot(left) > 0.0 &&
+             (d - a).cross(p - a).dot(right) > 0.0 && (d - p).cross(b - p).dot(right) > 0.0 &&
+             std::min({angle_at(c, a, p), angle_at(c, p, b), angle_at(d, a, p), angle_at(d, p, b)}) >
+                 kLeastDividedAngle &&
+             amiss(a, p) + amiss(p, b) + amiss(p, c) + amiss(p, d) < before;
     };
     for (const double share : {0.5, 0.35, 0.65}) {
       const Eigen::Vector3d from = a + share * (b - a);
-      if (const auto hit = along(from, normal, length); hit && fits(*hit)) return hit;
+      if (const auto hit = along(from, normal, 0.5 * length); hit && fits(*hit)) return hit;
       if (const Eigen::Vector3d near = onto_m1(from, skin_); fits(near)) return near;
       // Beyond the field's outer band only the sampled surface knows where M1 is.
       if (!surface_) surface_.emplace(skin_.inner_surface.vertices);

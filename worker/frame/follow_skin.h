@@ -20,6 +20,8 @@ namespace skinframe {
 // the print, so there only the coarse is mended.
 inline constexpr double kOutwardInThicknesses = 0.9;
 inline constexpr double kInwardInThicknesses = 2.0;
+// At most this share of nodes is added; the worst struts are divided first.
+inline constexpr double kMostAdded = 0.2;
 // Shorter edges are not divided.
 inline constexpr double kShortestDividedInThicknesses = 2.0;
 
@@ -39,8 +41,7 @@ struct SkinFollowing {
   int edges_left = 0;  // that still deviate: too short to divide, or beyond the bound on nodes
 };
 
-// Vertices keep their numbers, those that are held (one a vertex) their places; new ones come after. At most
-// as many nodes again as the mesh has.
+// Vertices keep their numbers, those that are held (one a vertex) their places; new ones come after.
 Result<SkinFollowing> follow_skin(TriangleMesh& mesh, const std::vector<char>& held, const Skin& skin,
                                   const RunContext& context);
 

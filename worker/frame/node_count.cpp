@@ -142,7 +142,7 @@ void weigh_by_stress(const TriangleMesh& mesh, const StressMap& stress, double f
   for (std::size_t v = 0; v < areas.size(); ++v) {
     if (std::isnan(logarithm[v])) continue;
     const double factor = std::clamp(std::exp(kStressExponent * (logarithm[v] - sum / area)),
-                                     1.0 / kMostStressFactor, kMostStressFactor);
+                                     kLeastStressFactor, kMostStressFactor);
     length[v] = std::min(length[v] / std::sqrt(factor), finger_edge);
   }
   grade(length, mesh, vertex_graph(mesh));

@@ -42,11 +42,11 @@ std::vector<double> edge_length_field(const TriangleMesh& inner_surface, double 
                                       double skin_thickness_mm);
 
 // Node density follows the stress too (Wang et al. 2013, section 4.2). Stress is very skewed, so it is
-// compressed: a factor on the density, (s / s0)^kStressExponent within [1 / kMostStressFactor,
+// compressed: a factor on the density, (s / s0)^kStressExponent within [kLeastStressFactor,
 // kMostStressFactor], s0 the geometric mean over the area; 1 where no stress is known. Edges become
 // a / sqrt(factor), a_finger at most.
 constexpr double kStressExponent = 0.25;
-constexpr double kMostStressFactor = 2.0;
+constexpr double kLeastStressFactor = 0.7, kMostStressFactor = 2.0;
 void weigh_by_stress(const TriangleMesh& inner_surface, const StressMap& stress, double finger_edge_mm,
                      std::vector<double>& edge_length_mm);
 

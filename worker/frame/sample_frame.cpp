@@ -315,7 +315,9 @@ Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options,
   const auto inner = spread_nodes(room, internal, skin, context);
   if (context.cancelled()) return cancelled_error();
   sampled.frame.nodes_mm.insert(sampled.frame.nodes_mm.end(), inner.begin(), inner.end());
-  add_internal_struts(sampled.frame, options.strut_radius_mm, options.neighbours, skin);
+  const auto added = add_internal_struts(
+      sampled.frame, {options.strut_radius_mm, options.slenderness, options.neighbours}, skin);
+  sampled.struts_left_out_crossing = added.struts_crossing;
 
   sampled.contact_nodes =
       contact_nodes(sampled.frame.nodes_mm, sampled.frame.skin_node_count, contact_height + kContactSlackMm);

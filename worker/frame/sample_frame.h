@@ -41,6 +41,7 @@ struct FrameOptions {
   double strut_radius_mm = 0.5;       // eta: struts are tested against M1 with this radius, > 0
   double contact_tolerance_mm = 1.0;  // contact = M within this of its lowest plane, > 0
   int neighbours = 9;                 // nearest nodes tried from each internal node, [1, 64]
+  std::optional<double> slenderness;  // alpha of (4): a strut's least radius is at least l / alpha, > 0
   const StressMap* stress = nullptr;  // none: the density follows curvature alone
   Status validate() const;
 };
@@ -62,6 +63,7 @@ struct SampledFrame {
   double worst_outward_chord_mm = 0.0;  // furthest that the axis of a skin strut stands outside of M1,
   double worst_inward_chord_mm = 0.0;   // and below it
   int skin_struts_outside = 0;          // skin struts whose axis leaves M
+  int struts_left_out_crossing = 0;     // internal ones, nearer to others than their least radii allow
   TriangleAngles angles;
   int pieces = 0;  // of M1 that have a frame
   std::vector<std::string> warnings;

@@ -21,6 +21,7 @@ constexpr double kGravityMmPerS2 = 9810.0;
 constexpr double kLeastSpacingInVoxels = 1.5;  // of the distance field
 constexpr double kMostFree = 0.01;             // of M1's volume that may hang free before M is taken
 constexpr double kSpanMm2 = 0.05;              // twice the area that three supports must span
+constexpr double kLowestInSpacings = 0.1;      // what is so little above the lowest vertex is held with it
 constexpr double kSmoothing = 0.25;            // in spacings: nearer vertices do not outvote each other
 constexpr double kReach = 1.5;                 // in spacings: vertices that are averaged
 constexpr double kFarReach = 2.0;              // in spacings: the nearest one alone
@@ -56,40 +57,50 @@ bool spans_a_plane(const std::vector<Eigen::Vector3d>& points) {
                      [&](const auto& c) { return (b - a).cross(c - a).norm() >= kSpanMm2; });
 }
 
-// Vertices at or below the contact's height, and the lowest ones beyond until three are not in line.
-std::vector<char> find_supports(const TetMesh& mesh, double height) {
-  std::vector<int> order(mesh.vertices_mm.size());
-  std::iota(order.begin(), order.end(), 0);
+// Of some vertices, those at or below the height, and the lowest ones beyond until three are not in line.
+void hold_lowest(const TetMesh& mesh, std::vector<int> vertices, double height, std::vector<char>& held) {
   const auto z = [&](int v) { return mesh.vertices_mm[v].z(); };
-  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return z(i) < z(j); });
-  std::vector<char> held(order.size(), 0);
+  std::stable_sort(vertices.begin(), vertices.end(), [&](int i, int j) { return z(i) < z(j); });
   std::vector<Eigen::Vector3d> points;
   bool enough = false;
-  for (const int v : order) {
+  for (const int v : vertices) {
     if (z(v) > height && enough) break;
     held[v] = 1;
     points.push_back(mesh.vertices_mm[v]);
     enough = enough || spans_a_plane(points);
   }
-  return held;
 }
 
-// Components that stand on three supports not in line stay; a linear system with a free one has no solution.
-HeldMesh keep_held(TetMesh mesh, double contact_height) {
-  HeldMesh out;
-  out.held = find_supports(mesh, contact_height);
+// The components that stand on the contact, and the largest in any case: where the lattice is too coarse for
+// what joins it to the contact, it is held where it is lowest. The others go: a linear system with a free one
+// has no solution.
+HeldMesh keep_held(TetMesh mesh, double contact_height, double spacing) {
   const auto component = face_components(mesh);
-  std::map<int, std::vector<int>> supports;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    for (const int v : mesh.tets[t])
-      if (out.held[v]) supports[component[t]].push_back(v);
+  std::map<int, std::vector<int>> vertices_of;
+  std::map<int, double> volume_of;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    auto& list = vertices_of[component[t]];
+    list.insert(list.end(), mesh.tets[t].begin(), mesh.tets[t].end());
+    volume_of[component[t]] += tet_volume_mm3(mesh, mesh.tets[t]);
+  }
+  int largest = 0;
+  for (const auto& [c, volume] : volume_of)
+    if (volume > volume_of.at(largest)) largest = c;
+  HeldMesh out;
+  out.held.assign(mesh.vertices_mm.size(), 0);
   std::map<int, bool> stands;
-  for (auto& [c, vertices] : supports) {
+  for (auto& [c, vertices] : vertices_of) {
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-    std::vector<Eigen::Vector3d> points;
-    for (const int v : vertices) points.push_back(mesh.vertices_mm[v]);
-    stands[c] = spans_a_plane(points);
+    std::vector<Eigen::Vector3d> low;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const int v : vertices) {
+      lowest = std::min(lowest, mesh.vertices_mm[v].z());
+      if (mesh.vertices_mm[v].z() <= contact_height) low.push_back(mesh.vertices_mm[v]);
+    }
+    stands[c] = c == largest || spans_a_plane(low);
+    const double height = std::max(contact_height, lowest + kLowestInSpacings * spacing);
+    if (stands[c]) hold_lowest(mesh, vertices, height, out.held);
   }
   std::vector<std::array<int, 4>> kept;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
@@ -254,7 +265,7 @@ Result<StressMap> map_stress(const Skin& skin, const std::vector<StressLoad>& lo
       auto mesh = fill(skin, body, state->spacing_mm, context);
       if (!mesh) return mesh.error();
       const double lowest = skin.plate_z_mm + body.depth_mm;
-      held = keep_held(std::move(mesh).value(), lowest + options.contact_tolerance_mm);
+      held = keep_held(std::move(mesh).value(), lowest + options.contact_tolerance_mm, state->spacing_mm);
       if (!held.mesh.tets.empty() && held.free_volume_mm3 <= kMostFree * body.volume_mm3) break;
     }
     if (held.mesh.tets.empty())

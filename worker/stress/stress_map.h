@@ -5,6 +5,7 @@
 //
 // The solid is that enclosed by M1, which the frame stands for. Where M1 has parts that no solid joins to the
 // base, M itself is taken instead, necks included; what then still hangs free has no stress.
+// The largest part is held at its lowest vertices where the lattice finds nothing between it and the contact.
 #pragma once
 
 #include <memory>

@@ -80,7 +80,9 @@ TEST(SampleFrame, TorusKeepsItsHole) {
   const SampledFrame sampled = frame_of(skin, options_for_pa());
   expect_invariants(sampled, skin, 0.5);
   EXPECT_EQ(bodies::euler_characteristic(skin_mesh(sampled.frame)), 0);
-  EXPECT_EQ(sampled.frame.skin_node_count, sampled.skin_nodes_requested);
+  EXPECT_EQ(sampled.skin_nodes_sampled, sampled.skin_nodes_requested);
+  EXPECT_GE(sampled.frame.skin_node_count, sampled.skin_nodes_sampled);
+  EXPECT_GT(sampled.angles.mean, 45.0);
   EXPECT_GT(sampled.frame.nodes_mm.size(), static_cast<std::size_t>(sampled.frame.skin_node_count));
   EXPECT_TRUE(sampled.warnings.empty());
 }
@@ -93,8 +95,8 @@ TEST(SampleFrame, SphereHasExactlyTheNodesAskedFor) {
     options.internal_nodes = 10;
     const SampledFrame sampled = frame_of(skin, options);
     expect_invariants(sampled, skin, 0.5);
-    EXPECT_EQ(sampled.frame.skin_node_count, n);
-    EXPECT_EQ(sampled.frame.skin_triangles.size(), 2u * n - 4u);
+    EXPECT_EQ(sampled.skin_nodes_sampled, n);
+    EXPECT_EQ(sampled.frame.skin_triangles.size(), 2u * sampled.frame.skin_node_count - 4u);
     EXPECT_EQ(bodies::euler_characteristic(skin_mesh(sampled.frame)), 2);
   }
 }
@@ -115,7 +117,7 @@ TEST(SampleFrame, EdgesOfASphereAreEvenAndItsTrianglesRound) {
   }
   EXPECT_LT(longest / shortest, 2.2);
   const double sag = longest_of_all * longest_of_all / (8.0 * 24.0);  // of a chord of M1, whose radius is 24
-  EXPECT_NEAR(sampled.worst_skin_strut_chord_mm, sag, 0.15 * sag);
+  EXPECT_NEAR(sampled.worst_inward_chord_mm, sag, 0.15 * sag);
 }
 
 TEST(SampleFrame, BoxStandsOnItsWholeBase) {
@@ -151,6 +153,33 @@ TEST(SampleFrame, SphereOnItsPoleStandsOnThreeNodesNotInLine) {
   }
   // The contact is a cap of 1 mm: radius sqrt(2 * 19 * 1) = 6.2 mm.
   EXPECT_GT(widest, 35.0);
+}
+
+// A column clamped at its base and pushed at its top: nodes gather where it bends most.
+TEST(SampleFrame, NodesAreDenserWhereTheSolidIsStressed) {
+  const Skin skin = skin_of(bodies::box(24, 24, 90));
+  RunContext context;
+  StressOptions stress_options;
+  stress_options.material.modulus_mpa = 1586;
+  const auto stress = map_stress(skin, {{"push", {12, 12, 90}, {20, 0, 0}, 8}}, stress_options, context);
+  ASSERT_TRUE(stress.ok()) << stress.error().message;
+  const auto share_below = [&](const StressMap* map) {
+    FrameOptions options = options_for_pa();
+    options.skin_nodes = 260;
+    options.stress = map;
+    const SampledFrame sampled = frame_of(skin, options);
+    expect_invariants(sampled, skin, 0.5);
+    double low = 0, high = 0;  // on the walls, as far from the base as from the top
+    for (int i = 0; i < sampled.frame.skin_node_count; ++i) {
+      const double z = sampled.frame.nodes_mm[i].z();
+      low += z > 8 && z < 32;
+      high += z > 58 && z < 82;
+    }
+    return low / (low + high);
+  };
+  const double even = share_below(nullptr);
+  EXPECT_NEAR(even, 0.5, 0.06);
+  EXPECT_GT(share_below(&*stress), even + 0.02);
 }
 
 // Two blocks of 20 mm and a bridge of 1.6 mm, which is thinner than two skins: M1 has two pieces.
