@@ -182,6 +182,8 @@ ExportedPrinter parse_printer(const json& item) {
   out.balance_margin_mm = optional_number(item, "balance_margin_mm");
   parse_bounds(item, &out);
   out.infeasibility_proven = item.value("infeasibility_proven", false);
+  if (item.contains("sampling"))
+    out.skin_struts_outside = item.at("sampling").at("skin_struts_outside").get<int>();
   out.final_nodes = item.at("counts").at("geometry").at("nodes").get<int>();
   out.final_struts = item.at("counts").at("geometry").at("struts").get<int>();
   if (!out.infeasible()) {

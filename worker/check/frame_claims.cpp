@@ -140,7 +140,8 @@ void claim_inside(const ExportedPrinter& result, const Surface& outer, Verdict* 
   for (const auto& t : frame.skin_triangles)
     for (const int v : t) is_skin[v] = true;
   double worst_internal = std::numeric_limits<double>::infinity(), worst_bridge = worst_internal;
-  std::size_t internal = 0, bridges = 0, skin = 0, leaving = 0;
+  std::size_t internal = 0, bridges = 0, skin = 0;
+  int leaving = 0;
   double furthest_out = 0;
   for (const ExportedStrut& s : frame.struts) {
     const Eigen::Vector3d &a = frame.nodes_mm[s.a], &b = frame.nodes_mm[s.b];
@@ -150,7 +151,7 @@ void claim_inside(const ExportedPrinter& result, const Surface& outer, Verdict* 
       least = std::min(least, outer.depth_mm(a + (b - a) * (double(k) / steps)));
     if (s.skin) {
       ++skin;
-      if (least < 0) ++leaving;
+      if (least < -tolerance) ++leaving;
       furthest_out = std::max(furthest_out, -least);
     } else if (is_skin[s.a] && is_skin[s.b]) {
       ++bridges;
@@ -172,10 +173,17 @@ void claim_inside(const ExportedPrinter& result, const Surface& outer, Verdict* 
                  "skin nodes{}",
                  internal, internal == 0 ? 0.0 : worst_internal, wanted, bridges,
                  bridges == 0 ? "" : fmt::format(", shallowest {:.3f} mm (more than 0)", worst_bridge))});
-  verdict->notes.push_back(
-      fmt::format("{} of {} skin struts leave the object between their nodes, by {:.2f} mm at most; what "
-                  "leaves is not printed",
-                  leaving, skin, furthest_out));
+  const std::string followed = fmt::format(
+      "{} of {} skin struts leave the object between their nodes by more than {:.2f} mm{}, by {:.2f} "
+      "mm at most; what leaves is not printed",
+      leaving, skin, tolerance,
+      result.skin_struts_outside ? fmt::format(" (reported {})", *result.skin_struts_outside) : "",
+      furthest_out);
+  if (result.skin_struts_outside)
+    verdict->claims.push_back(
+        {"skin struts follow the skin", leaving <= *result.skin_struts_outside, followed});
+  else
+    verdict->notes.push_back(followed);
 }
 
 }  // namespace

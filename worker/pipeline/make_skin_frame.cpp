@@ -7,6 +7,7 @@
 
 #include "worker/pipeline/make_solid.h"
 #include "worker/pipeline/pose_problem.h"
+#include "worker/pipeline/sample_by_stress.h"
 #include "worker/pipeline/solve_and_merge.h"
 #include "worker/pipeline/write_json.h"
 #include "worker/pipeline/write_results.h"
@@ -85,17 +86,8 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
     return report;
   }
 
-  context.report({.stage = Stage::kSample});
-  FrameOptions frame_options;
-  frame_options.skin_nodes = job.options.skin_nodes;
-  frame_options.internal_nodes = job.options.internal_nodes;
-  frame_options.plate.tensile_modulus_mpa = request.material.tensile_modulus_mpa;
-  frame_options.plate.displacement_limit_mm = job.options.displacement_limit_mm;
-  frame_options.strut_radius_mm = printer.min_radius_mm;
-  auto sampled = sample_frame(*skin, frame_options, context);
+  auto sampled = sample_by_stress(prepared, *skin, request, job, laps, &report, context);
   if (!sampled) return sampled.error();
-  report.warnings.insert(report.warnings.end(), sampled->warnings.begin(), sampled->warnings.end());
-  laps.lap("sample");
 
   const BalanceState balance = decide_balance(job.options.balance, prepared.contact);
   if (balance == BalanceState::kEnforced && prepared.contact.hull.size() < 3) {

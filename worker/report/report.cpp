@@ -56,6 +56,24 @@ void add_bounds(const OptimizeResult& result, json& out) {
   if (result.reason == Termination::kInfeasible) out["infeasibility_proven"] = result.certificate.has_value();
 }
 
+json sampling_json(const SamplingFacts& facts) {
+  json out = {{"density", facts.density},
+              {"skin_nodes_requested", facts.skin_nodes_requested},
+              {"skin_nodes_sampled", facts.skin_nodes_sampled},
+              {"skin_nodes", facts.skin_nodes},
+              {"internal_nodes", facts.internal_nodes},
+              {"mean_least_angle_degrees", facts.angles.mean},
+              {"first_percentile_least_angle_degrees", facts.angles.first_percentile},
+              {"least_angle_degrees", facts.angles.least},
+              {"worst_outward_chord_mm", facts.worst_outward_chord_mm},
+              {"worst_inward_chord_mm", facts.worst_inward_chord_mm},
+              {"skin_struts_outside", facts.skin_struts_outside},
+              {"struts_left_out_crossing", facts.struts_left_out_crossing}};
+  if (facts.stress_tetrahedra) out["stress_tetrahedra"] = *facts.stress_tetrahedra;
+  if (facts.stress_largest_mpa) out["stress_largest_mpa"] = *facts.stress_largest_mpa;
+  return out;
+}
+
 }  // namespace
 
 const char* to_string(Reason reason) {
@@ -180,6 +198,7 @@ json to_json(const PrinterReport& report) {
               {"termination", {{"reason", report.termination}, {"detail", report.termination_detail}}}};
   out["files"] = report.files;
   if (report.thin) out["thin"] = thin_json(*report.thin);
+  if (report.sampling) out["sampling"] = sampling_json(*report.sampling);
   if (s.balance_margin_mm) out["balance_margin_mm"] = *s.balance_margin_mm;
   add_bounds(result, out);
   if (result.best_reachable_displacement_mm)

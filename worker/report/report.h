@@ -58,10 +58,25 @@ struct Statistics {
 };
 nlohmann::json to_json(const Statistics& statistics);
 
+<<<<<<< HEAD
 // Of skin-frame-compact.stl.
 struct CompactFacts {
   std::size_t triangles = 0;
   double volume_mm3 = 0, deviation_mm = 0;  // deviation from skin-frame.stl
+=======
+// How the frame's nodes were placed, as measured on the initial frame: the "sampling" object.
+struct SamplingFacts {
+  std::string density;  // "stress+curvature" or "curvature"
+  int skin_nodes_requested = 0, skin_nodes_sampled = 0;
+  int skin_nodes = 0;  // after struts that left M1 were divided
+  int internal_nodes = 0;
+  TriangleAngles angles;
+  double worst_outward_chord_mm = 0, worst_inward_chord_mm = 0;  // of skin struts from M1
+  int skin_struts_outside = 0;                                   // whose axis leaves M
+  int struts_left_out_crossing = 0;
+  std::optional<int> stress_tetrahedra;
+  std::optional<double> stress_largest_mpa;  // of the solid, at a vertex of the map
+>>>>>>> 609d553 (wip2)
 };
 
 // Everything that is known when one printer's part ends, by result or by a bound that cannot be kept.
@@ -75,6 +90,7 @@ struct PrinterReport {
   Statistics statistics;
   std::string termination;  // "OPTIMAL", "ITERATION_LIMIT", "NOT_OPTIMIZED", "INFEASIBLE", "SOLID", ...
   std::string termination_detail;
+  std::optional<SamplingFacts> sampling;
   std::optional<OptimizeResult> optimised;
   std::optional<ThinParts> thin;   // once the skin is built
   bool is_solid = false;           // thin everywhere: printed as it is, without a frame

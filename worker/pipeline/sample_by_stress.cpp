@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/pipeline/sample_by_stress.h"
+
+#include <fmt/format.h>
+
+#include "worker/pipeline/place_loads.h"
+
+namespace skinframe {
+namespace {
+
+// Below this share of the solid the map says too little about it to go without a word.
+constexpr double kLeastCovered = 0.8;
+
+std::vector<StressLoad> stress_loads(const std::vector<Load>& loads, const Solid& solid) {
+  std::vector<StressLoad> out;
+  for (const Load& load : loads) {
+    const Eigen::Vector3d point = std::holds_alternative<Place>(load.where)
+                                      ? place_point_mm(solid, std::get<Place>(load.where))
+                                      : std::get<Eigen::Vector3d>(load.where);
+    out.push_back({load.name, point, load.force_n, load.radius_mm});
+  }
+  return out;
+}
+
+SamplingFacts facts_of(const SampledFrame& sampled, const std::optional<StressMap>& stress) {
+  SamplingFacts facts;
+  facts.density = stress ? "stress+curvature" : "curvature";
+  facts.skin_nodes_requested = sampled.skin_nodes_requested;
+  facts.skin_nodes_sampled = sampled.skin_nodes_sampled;
+  facts.skin_nodes = sampled.frame.skin_node_count;
+  facts.internal_nodes = static_cast<int>(sampled.frame.nodes_mm.size()) - sampled.frame.skin_node_count;
+  facts.angles = sampled.angles;
+  facts.worst_outward_chord_mm = sampled.worst_outward_chord_mm;
+  facts.worst_inward_chord_mm = sampled.worst_inward_chord_mm;
+  facts.skin_struts_outside = sampled.skin_struts_outside;
+  facts.struts_left_out_crossing = sampled.struts_left_out_crossing;
+  if (stress) {
+    facts.stress_tetrahedra = stress->tetrahedra();
+    facts.stress_largest_mpa = stress->largest_mpa();
+  }
+  return facts;
+}
+
+}  // namespace
+
+Result<SampledFrame> sample_by_stress(const PreparedSolid& prepared, const Skin& skin,
+                                      const PrinterRequest& request, const JobRequest& job, Laps& laps,
+                                      PrinterReport* report, RunContext& context) {
+  StressOptions stress_options;
+  stress_options.material.modulus_mpa = request.material.tensile_modulus_mpa;
+  stress_options.density_g_cm3 = request.material.density_g_cm3;
+  auto mapped = map_stress(skin, stress_loads(job.loads, prepared.solid), stress_options, context);
+  if (!mapped && mapped.error().kind == ErrorKind::kCancelled) return mapped.error();
+  std::optional<StressMap> stress;
+  if (mapped) {
+    stress = std::move(mapped).value();
+    if (stress->covered_volume_share() < kLeastCovered)
+      report->warnings.push_back(fmt::format(
+          "the stress map knows {:.0f} % of the solid; elsewhere skin nodes follow curvature alone",
+          100 * stress->covered_volume_share()));
+  } else {
+    report->warnings.push_back(fmt::format(
+        "no stress map could be made, so the skin nodes follow curvature alone: {}", mapped.error().message));
+  }
+  laps.lap("stress");
+
+  context.report({.stage = Stage::kSample});
+  FrameOptions options;
+  options.skin_nodes = job.options.skin_nodes;
+  options.internal_nodes = job.options.internal_nodes;
+  options.plate.tensile_modulus_mpa = request.material.tensile_modulus_mpa;
+  options.plate.displacement_limit_mm = job.options.displacement_limit_mm;
+  options.strut_radius_mm = request.printer.min_radius_mm;
+  options.slenderness = request.material.slenderness;
+  options.stress = stress ? &*stress : nullptr;
+  auto sampled = sample_frame(skin, options, context);
+  if (!sampled) return sampled.error();
+  report->warnings.insert(report->warnings.end(), sampled->warnings.begin(), sampled->warnings.end());
+  report->sampling = facts_of(*sampled, stress);
+  laps.lap("sample");
+  return sampled;
+}
+
+}  // namespace skinframe
