@@ -58,12 +58,12 @@ struct Statistics {
 };
 nlohmann::json to_json(const Statistics& statistics);
 
-<<<<<<< HEAD
 // Of skin-frame-compact.stl.
 struct CompactFacts {
   std::size_t triangles = 0;
   double volume_mm3 = 0, deviation_mm = 0;  // deviation from skin-frame.stl
-=======
+};
+
 // How the frame's nodes were placed, as measured on the initial frame: the "sampling" object.
 struct SamplingFacts {
   std::string density;  // "stress+curvature" or "curvature"
@@ -76,7 +76,6 @@ struct SamplingFacts {
   int struts_left_out_crossing = 0;
   std::optional<int> stress_tetrahedra;
   std::optional<double> stress_largest_mpa;  // of the solid, at a vertex of the map
->>>>>>> 609d553 (wip2)
 };
 
 // Everything that is known when one printer's part ends, by result or by a bound that cannot be kept.
