@@ -155,8 +155,9 @@ class Algorithm {
       const double before = design_.volume_mm3;
       const std::size_t struts = design_.problem.frame.struts.size();
       if (topology)
-        timed("topology", Stage::kTopology,
-              [&] { design_ = optimise_topology(std::move(design_), session_); });
+        timed("topology", Stage::kTopology, [&] {
+          design_ = optimise_topology(std::move(design_), round > 0 || !options_.geometry, session_);
+        });
       if (session_.cancelled()) return;
       if (round == 0) {
         result_.topology = record_of(design_.problem, design_.volume_mm3);

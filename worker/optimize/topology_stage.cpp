@@ -96,7 +96,7 @@ std::vector<double> rounding_weights(const Design& design, const std::vector<dou
 }
 
 // Sets `bound_mm3` to the relaxed optimum where that was reached.
-Design relax(Design design, double& bound_mm3, Session& session) {
+Design relax(Design design, bool rounded_up, double& bound_mm3, Session& session) {
   ProgramRequest least = removal_request(design);
   least.warm = design.warm;
   if (!least.warm.empty()) least.initial_barrier = kNearBarrier;
@@ -105,6 +105,8 @@ Design relax(Design design, double& bound_mm3, Session& session) {
   if (outcome.converged()) {
     bound_mm3 = volume_of(design.problem.frame, outcome.areas_mm2);
     design.warm = outcome.warm;
+  }
+  if (outcome.converged() && rounded_up) {
     ProgramRequest request = removal_request(design);
     request.area_weights = rounding_weights(design, outcome.areas_mm2);
     session.offer(design.warm);
@@ -146,12 +148,12 @@ Design reweight(Design design, double cap_room, Session& session) {
 
 }  // namespace
 
-Design optimise_topology(Design design, Session& session) {
+Design optimise_topology(Design design, bool rounded_up, Session& session) {
   if (auto bare = bare_design(design, session.options())) return std::move(*bare);
   const OptimizeOptions& options = session.options();
   const bool tight = options.order == OptimizeOptions::Order::kTight;
   double bound_mm3 = 0;
-  if (tight && options.relaxed) design = relax(std::move(design), bound_mm3, session);
+  if (tight && options.relaxed) design = relax(std::move(design), rounded_up, bound_mm3, session);
   if (!options.topology || session.cancelled()) return design;
   if (design.volume_mm3 <= (1 + kNoRoom) * bound_mm3) return design;
   return reweight(std::move(design), tight ? options.topology_cap_room : kPaperCapRoom, session);

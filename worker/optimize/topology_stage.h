@@ -5,7 +5,7 @@
 //   bare        no removable strut at all, the rest at its lower bounds: if that is feasible nothing is left
 //   to do relaxed     minimum volume; then once more with each removable strut's length weighed by
 //               max(1, (lower + xi) / (A + xi)): a strut costs what it will cost once it stands at its lower
-//               bound or is gone. kTight only.
+//               bound or is gone (where rounded_up is asked for). kTight only.
 //   reweighted  minimum of sum w_j A_j, w_j = xi / (xi + A_j), volume <= cap: the convex stand-in for the
 //   number
 //               of struts (17), with as many reweightings as the options say
@@ -30,8 +30,12 @@ namespace skinframe {
 
 inline constexpr double kNoRoom = 1e-3;  // relative, of the volume
 
+// rounded_up: the relaxed program is solved a second time with those weights. Struts between nothing and
+// their lower bound that a threshold lets stay are room for the geometry that follows: before its first round
+// they are worth more than their volume.
+//
 // The design itself, or a sized one of no more volume (beyond kVolumeTie) with fewer struts. On cancellation:
 // any of the two.
-Design optimise_topology(Design design, Session& session);
+Design optimise_topology(Design design, bool rounded_up, Session& session);
 
 }  // namespace skinframe
