@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "worker/pipeline/fits_tray.h"
 #include "worker/pipeline/make_solid.h"
 #include "worker/pipeline/pose_problem.h"
 #include "worker/pipeline/sample_by_stress.h"
@@ -16,22 +17,6 @@
 
 namespace skinframe {
 namespace {
-
-// Upright, and turned by 90 degrees about z if that helps.
-Status fits_tray(const Solid& solid, const PrinterProfile& printer) {
-  const Eigen::Vector3d size = solid.box().extent();
-  Eigen::Vector3d tray = printer.tray_mm;
-  if ((size.x() > size.y()) != (tray.x() > tray.y())) std::swap(tray.x(), tray.y());
-  const Eigen::Vector3d excess = (size - tray).cwiseMax(0.0);
-  if (excess.maxCoeff() <= 0) return ok_status();
-  return Error{
-      ErrorKind::kDoesNotFit,
-      fmt::format(
-          "{:.1f} x {:.1f} x {:.1f} mm does not fit the tray of {} ({:g} x {:g} x {:g} mm) by {:.1f} mm; use "
-          "a smaller --size",
-          size.x(), size.y(), size.z(), printer.id, printer.tray_mm.x(), printer.tray_mm.y(),
-          printer.tray_mm.z(), excess.maxCoeff())};
-}
 
 std::vector<std::string> honest_warnings(const PrinterProfile& printer) {
   switch (printer.process) {

@@ -15,7 +15,8 @@ namespace {
 // Bodies outside these bounds are mistakes of unit: nothing in a tray is larger, nothing smaller has an
 // inside.
 constexpr double kMinEdgeMm = 1.0, kMaxEdgeMm = 2000.0;
-constexpr double kPlateToleranceMm = 1e-3;  // absolute: rounding to float of a body of that size
+constexpr double kSizeToleranceRelative = 1e-5;  // of --size: likewise
+constexpr double kPlateToleranceMm = 1e-3;       // absolute: rounding to float of a body of that size
 
 }  // namespace
 
@@ -38,14 +39,21 @@ Result<PreparedSolid> prepare_solid(const JobRequest& request, RunContext& conte
   auto repaired = repair(std::move(mesh), RepairOptions{}, context);
   if (!repaired) return repaired.error();
   Solid solid = std::move(repaired.value().solid);
-  if (std::abs(solid.box().min.z()) > kPlateToleranceMm) {  // repair dropped what stood on the plate
-    auto again = Solid::make(put_on_plate(solid.mesh()));
+  std::vector<std::string>& repairs = repaired.value().repairs;
+  const double repaired_edge = solid.box().extent().maxCoeff();
+  const double wanted_edge = request.options.size_mm.value_or(repaired_edge);
+  const bool resized = std::abs(repaired_edge - wanted_edge) > kSizeToleranceRelative * wanted_edge;
+  if (resized || std::abs(solid.box().min.z()) > kPlateToleranceMm) {  // repair dropped what bounded the box
+    auto again = Solid::make(put_on_plate(scale_to_largest_edge(solid.mesh(), wanted_edge)));
     if (!again) return again.error();
     solid = std::move(again).value();
+    if (resized) {
+      repairs.push_back(fmt::format("scaled what is left by {:.6g}, from {:.4g} mm to the size wanted",
+                                    wanted_edge / repaired_edge, repaired_edge));
+    }
   }
   Contact contact = find_contact(solid);
-  MeshFacts facts{request.mesh_name, file->format, std::move(repaired.value().repairs),
-                  std::move(repaired.value().warnings)};
+  MeshFacts facts{request.mesh_name, file->format, std::move(repairs), std::move(repaired.value().warnings)};
   facts.repairs.insert(facts.repairs.begin(), file->notes.begin(), file->notes.end());
   return PreparedSolid{std::move(solid), std::move(contact), std::move(facts)};
 }

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/pipeline/prepare_solid.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/worker/pipeline/small_job.h"
+#include "tests/worker/solid/shapes.h"
+
+namespace skinframe {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+Result<PreparedSolid> prepare(const TriangleMesh& mesh, std::optional<double> size_mm) {
+  test::ScratchFolder folder;
+  JobRequest request;
+  request.mesh_name = "body.stl";
+  request.mesh_path = folder.path() / request.mesh_name;
+  SKINFRAME_CHECK(write_stl(mesh, request.mesh_path).ok());
+  request.options.size_mm = size_mm;
+  RunContext context;
+  return prepare_solid(request, context);
+}
+
+TEST(PrepareSolid, ASpeckThatRepairDropsDoesNotMakeTheBodySmaller) {
+  // An open speck far away: without it the body has a fifth of the box.
+  TriangleMesh mesh = testing::cube(20);
+  mesh = testing::merged(mesh, {{{100, 0, -5}, {100.01, 0, -5}, {100, 0.01, -5}}, {{0, 1, 2}}});
+  const auto prepared = prepare(mesh, 50.0);
+  ASSERT_TRUE(prepared.ok()) << prepared.error().message;
+  EXPECT_NEAR(prepared->solid.volume_mm3(), 50 * 50 * 50, 1);
+  EXPECT_NEAR(prepared->solid.box().min.z(), 0, 1e-4);
+  EXPECT_THAT(prepared->facts.repairs, Contains("dropped 1 loose scrap"));
+  EXPECT_THAT(prepared->facts.repairs, Contains(HasSubstr("scaled what is left by 5")));
+}
+
+TEST(PrepareSolid, RepairsAreReportedWithTheirVolumes) {
+  const auto prepared = prepare(
+      testing::merged(testing::cube(20), testing::moved(testing::cube(20), {10, 9, 8})), std::nullopt);
+  ASSERT_TRUE(prepared.ok()) << prepared.error().message;
+  EXPECT_THAT(prepared->facts.repairs, Contains(HasSubstr("add up to 16000 mm3 and enclose 14680 mm3")));
+}
+
+TEST(PrepareSolid, AMistakeOfUnitIsNamed) {
+  const auto prepared = prepare(testing::cube(0.02), std::nullopt);
+  ASSERT_FALSE(prepared.ok());
+  EXPECT_THAT(prepared.error().message, HasSubstr("--size"));
+}
+
+}  // namespace
+}  // namespace skinframe
