@@ -4,6 +4,7 @@
 #include <CGAL/Polygon_mesh_processing/corefinement.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
 
 #include <exception>
 #include <new>
@@ -15,14 +16,24 @@ namespace skinframe {
 
 namespace PMP = CGAL::Polygon_mesh_processing;
 
+namespace {
+
+CgalMesh surface_of(const TriangleMesh& body) {
+  PolygonSoupOfCgal soup = to_cgal_soup(body);
+  PMP::orient_polygon_soup(soup.points, soup.triangles);
+  CgalMesh surface;
+  PMP::polygon_soup_to_polygon_mesh(soup.points, soup.triangles, surface);
+  return surface;
+}
+
+}  // namespace
+
 std::optional<TriangleMesh> unite_exactly(const std::vector<TriangleMesh>& bodies,
                                           const RunContext& context) {
   try {
     std::vector<CgalMesh> parts;
     for (const TriangleMesh& body : bodies) {
-      PolygonSoupOfCgal soup = to_cgal_soup(body);
-      PMP::orient_polygon_soup(soup.points, soup.triangles);
-      PMP::polygon_soup_to_polygon_mesh(soup.points, soup.triangles, parts.emplace_back());
+      parts.push_back(surface_of(body));
       if (!CGAL::is_closed(parts.back())) return std::nullopt;
     }
     // In pairs, and the results in pairs again: each triangle is cut a logarithm of times.
@@ -44,6 +55,20 @@ std::optional<TriangleMesh> unite_exactly(const std::vector<TriangleMesh>& bodie
     throw;
   } catch (const std::exception&) {
     return std::nullopt;  // the caller has a way without it
+  }
+}
+
+std::optional<TriangleMesh> unite_with_itself(const TriangleMesh& body) {
+  try {
+    CgalMesh surface = surface_of(body);
+    if (!PMP::experimental::autorefine_and_remove_self_intersections(surface)) return std::nullopt;
+    surface.collect_garbage();
+    if (!CGAL::is_closed(surface) || PMP::does_self_intersect(surface)) return std::nullopt;
+    return from_cgal(surface);
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception&) {
+    return std::nullopt;
   }
 }
 

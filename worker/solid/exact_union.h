@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The one boolean for which overlapping bodies need CGAL; the header is free of it. Internal to the room.
+// The booleans for which overlapping bodies need CGAL; the header is free of it. Internal to the room.
 #pragma once
 
 #include <optional>
@@ -14,5 +14,10 @@ namespace skinframe {
 // where they meet, nothing else moves. Empty when the library cannot: a surface crosses itself where it meets
 // another, or the result is not closed. `context` is asked between two bodies; empty when it was cancelled.
 std::optional<TriangleMesh> unite_exactly(const std::vector<TriangleMesh>& bodies, const RunContext& context);
+
+// A closed surface that crosses itself, cut along its own crossings, without the patches that lie within. The
+// library calls this experimental: it may keep the wrong patches, so the caller compares volumes. Empty when
+// it gives up or crossings are left.
+std::optional<TriangleMesh> unite_with_itself(const TriangleMesh& body);
 
 }  // namespace skinframe

@@ -20,6 +20,13 @@ namespace {
 // Corefinement of more than this takes too long.
 constexpr std::size_t kMostExactBodies = 200, kMostExactTriangles = 1'000'000;
 
+// Cleaning a surface of its own crossings looks, on each triangle, at every pair of the others that cut it:
+// the sum of those squares is bounded. 338 crossings of a scan come to some 2000.
+constexpr std::size_t kMostSelfWork = 20'000;
+
+// How far the volume of an exact union may be from what the level set says: the error of the latter.
+constexpr double kExactAgreement = 0.005;
+
 TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<int>& triangles) {
   TriangleMesh part;
   part.vertices = mesh.vertices;
@@ -47,10 +54,12 @@ class Clusters {
     for (std::size_t s = 0; s < shells_.size(); ++s) {
       for (const int t : shells_[s].triangles) shell_of[t] = static_cast<int>(s);
     }
+    std::map<int, std::size_t> cuts_of_triangle;
     for (const auto& [a, b] : pairs) {
       const int s = shell_of[a], t = shell_of[b];
       if (s == t) {
         ++self_pairs_[s];
+        for (const int triangle : {a, b}) self_work_ += 2 * cuts_of_triangle[triangle]++ + 1;
       } else {
         sets_.join(s, t);
         crossed_[s] = crossed_[t] = 1;
@@ -69,6 +78,8 @@ class Clusters {
 
   const std::vector<Shell>& shells() const { return shells_; }
   std::size_t self_pairs(int shell) const { return self_pairs_[shell]; }
+  // The sum of the squares of how often each triangle is cut by its own shell.
+  std::size_t self_work() const { return self_work_; }
 
   struct Cluster {
     std::vector<int> shells;
@@ -92,6 +103,7 @@ class Clusters {
   std::vector<Shell> shells_;
   DisjointSets sets_;
   std::vector<std::size_t> self_pairs_;
+  std::size_t self_work_ = 0;
   std::vector<char> crossed_;
 };
 
@@ -204,14 +216,32 @@ Result<Union> unite_overlaps(const TriangleMesh& mesh, const UniteOptions& optio
       keep();
       continue;
     }
-    // Slight crossings are left alone: the surface is the user's own. What they change is measured.
+    // Cut and cleaned where the library can; else slight crossings are left alone, since the surface is the
+    // user's own, and what they change is measured.
     double sum = 0, shut_off = 0;
+    bool clean = options.exact && clusters.self_work() <= kMostSelfWork;
+    TriangleMesh cleaned;
     for (const int s : cluster.shells) {
-      if (clusters.self_pairs(s) == 0) continue;
-      const TriangleMesh shell = part_of(mesh, clusters.shells()[s].triangles);
-      const double voxel = level_set_voxel(surface_area(shell), bounding_box(shell).extent().norm());
-      sum += std::abs(clusters.shells()[s].volume);
-      shut_off += shut_off_volume(shell, voxel);
+      TriangleMesh shell = part_of(mesh, clusters.shells()[s].triangles);
+      if (clusters.self_pairs(s) > 0) {
+        const double voxel = level_set_voxel(surface_area(shell), bounding_box(shell).extent().norm());
+        const double own = shut_off_volume(shell, voxel);
+        sum += std::abs(clusters.shells()[s].volume);
+        shut_off += own;
+        auto united = clean ? unite_with_itself(shell) : std::nullopt;
+        clean = united && std::abs(std::abs(signed_volume(*united)) - own) <= kExactAgreement * own;
+        if (clean) shell = std::move(*united);
+      }
+      append(cleaned, shell);
+    }
+    if (clean) {
+      outcome.repairs.push_back(
+          fmt::format("united a surface with itself where {}: its triangles add up to {:.6g} mm3 and enclose "
+                      "{:.6g} mm3",
+                      self_crossing(cluster.self_pairs), before, signed_volume(cleaned)));
+      append(outcome.mesh, cleaned);
+      outcome.changed = true;
+      continue;
     }
     const double overlap = shut_off > 0 ? std::abs(sum - shut_off) / shut_off : 0;
     if (overlap <= options.max_self_overlap_relative) {

@@ -12,8 +12,9 @@
 namespace skinframe {
 
 struct UniteOptions {
-  // A surface that crosses itself is left as it is while the volume that it shuts off from outside differs
-  // from the one that its triangles sum up to by at most this share; above, it is united with itself.
+  // A surface that crosses itself, and that the library cannot clean, is left as it is while the volume that
+  // it shuts off from outside differs from the one that its triangles sum up to by at most this share; above,
+  // it is united with itself.
   double max_self_overlap_relative = 0.01;
   bool exact = true;  // false: level sets only
 };
