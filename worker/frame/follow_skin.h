@@ -15,9 +15,9 @@
 
 namespace skinframe {
 
-// How far the axis of a skin strut may stand from M1, absolute, both as shares of h_S. Outwards half of the
-// skin: an axis never leaves M, and a strut of the least radius is printed whole. Inwards nothing is lost to
-// the print, so there only the coarse is mended.
+// How far the axis of a skin strut may stand from M1, as shares of h_S. Outwards a little less than the skin,
+// so that the axis stays inside M: at its outermost a strut is printed as the half that is in M, as the
+// skin's own half discs are. Inwards nothing is lost to the print, so there only the coarse is mended.
 inline constexpr double kOutwardInThicknesses = 0.9;
 inline constexpr double kInwardInThicknesses = 2.0;
 // At most this share of nodes is added; the worst struts are divided first.

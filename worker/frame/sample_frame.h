@@ -9,7 +9,8 @@
 // added there are skin nodes too. Internal nodes: Lloyd on the voxels deeper than a margin below M1. Default
 // count: those that the spacing of the skin edges asks for, at most 0.35 of the skin nodes (the paper's
 // frames have 0.12 to 0.44). Internal struts: from each internal node to its nearest nodes, where the strut
-// with the body radius fits (required_depth_mm in convex_region.h). A strut that does not fit is not made.
+// with the body radius fits (required_depth_mm in convex_region.h). What does not fit is divided once
+// where its node needs it, and of two struts that cross the longer is left out (internal_struts.h).
 // Pieces of M1: each is a component of the triangulation. Pieces too small for a triangulation, and pieces
 // that no strut through the solid neck can join to the largest, stay hollow without a frame; a warning says
 // so.
