@@ -20,7 +20,7 @@ class BarrierUpdate {
   double fraction_to_boundary() const { return std::max(kLeastFraction, 1 - value_); }
 
  private:
-  static constexpr double kSolvedWell = 10, kLinear = 0.2, kSuperlinear = 1.5, kLeastFraction = 0.99;
+  static constexpr double kSolvedWell = 30, kLinear = 0.2, kSuperlinear = 1.5, kLeastFraction = 0.99;
   double value_, smallest_;
 };
 

@@ -31,38 +31,39 @@ MatrixXd DenseRows::expand() const {
   return e;
 }
 
-void DenseRows::reset(int system_rows, const Iterate& it, double barrier, double elastic_gradient,
-                      double regularisation) {
+void DenseRows::reset(int system_rows, const Iterate& it, double regularisation) {
   border_ = MatrixXd::Zero(system_rows, columns());
   corner_ = MatrixXd::Zero(unknowns(), unknowns());
-  right_ = VectorXd::Zero(unknowns());
   eliminated_ = MatrixXd::Zero(sums(), sums());
-  eliminated_right_ = VectorXd::Zero(sums());
   elastic_curvature_ = 0;
-  if (unknowns() == 0) return;
-  const VectorXd c = inequalities(program_, layout_, it.point);
-  for (int r = 0; r < rows(); ++r) {
-    const int i = layout_.rows + r;
-    corner_(r, r) = -it.slacks[i] / it.duals[i];
-    right_[r] = -c[i] - barrier / it.duals[i];
-  }
+  for (int r = 0; r < rows(); ++r) corner_(r, r) = -it.slacks[layout_.rows + r] / it.duals[layout_.rows + r];
   if (!has_elastic()) return;
   const int t = rows();
   corner_(t, t) = regularisation;
-  right_[t] = -elastic_gradient;
   if (program_.elastic == ElasticScope::kBalance)
     for (std::size_t r = 0; r < program_.balance.size(); ++r) corner_(t, r) = corner_(r, t) = -1;
 }
 
-void DenseRows::eliminate_area(const VectorXd& sums, double curvature, double gradient) {
+void DenseRows::eliminate_area(const VectorXd& sums, double curvature) {
   eliminated_.noalias() += sums * sums.transpose() / curvature;
-  eliminated_right_ += gradient / curvature * sums;
+}
+
+void DenseRows::set_right_hand_side(const Iterate& it, double barrier, double elastic_gradient,
+                                    const VectorXd& sums) {
+  right_ = VectorXd::Zero(unknowns());
+  if (unknowns() == 0) return;
+  const VectorXd c = inequalities(program_, layout_, it.point);
+  for (int r = 0; r < rows(); ++r) {
+    const int i = layout_.rows + r;
+    right_[r] = -c[i] - barrier / it.duals[i];
+  }
+  right_.head(rows()) += weights_ * sums;
+  if (has_elastic()) right_[rows()] = -elastic_gradient;
 }
 
 bool DenseRows::factorise(const BlockLdlt& matrix) {
   if (unknowns() == 0) return true;
   corner_.topLeftCorner(rows(), rows()) -= weights_ * eliminated_ * weights_.transpose();
-  right_.head(rows()) += weights_ * eliminated_right_;
   if (has_elastic()) corner_(rows(), rows()) += elastic_curvature_;
   solved_ = border_;
   if (columns() > 0) matrix.solve_in_place(solved_);

@@ -43,15 +43,17 @@ class DenseRows {
   Eigen::VectorXd pull(const Iterate& iterate) const;
 
   // Starts a new system of so many rows, with what does not come from struts or nodes.
-  void reset(int system_rows, const Iterate& iterate, double barrier, double elastic_gradient,
-             double regularisation);
+  void reset(int system_rows, const Iterate& iterate, double regularisation);
   Eigen::MatrixXd& border() { return border_; }  // B
   void add_elastic(double curvature) { elastic_curvature_ += curvature; }
-  // An area goes out of the system: curvature h, gradient g, derivatives of the sums.
-  void eliminate_area(const Eigen::VectorXd& sums, double curvature, double gradient);
+  // An area goes out of the system: curvature h, derivatives of the sums.
+  void eliminate_area(const Eigen::VectorXd& sums, double curvature);
 
   // False when the signs of the Schur complement are not (1 for t; one negative a row).
   bool factorise(const BlockLdlt& matrix);
+  // `sums`: the sum over areas of the sums' derivatives times g / h.
+  void set_right_hand_side(const Iterate& iterate, double barrier, double elastic_gradient,
+                           const Eigen::VectorXd& sums);
   // From nodes = M^-1 y to the solution of the bordered system; `unknowns` are the new duals and t.
   void complete(const Eigen::VectorXd& right, Eigen::VectorXd& nodes, Eigen::VectorXd& unknowns) const;
   // What is left of the border's right-hand side and of the nodes' at a solution.
@@ -78,8 +80,7 @@ class DenseRows {
   Eigen::MatrixXd weights_;  // N: rows x sums
   Eigen::MatrixXd border_, solved_;
   Eigen::MatrixXd corner_;
-  Eigen::MatrixXd eliminated_;        // sum over areas of sums sums^T / h
-  Eigen::VectorXd eliminated_right_;  // and of sums g / h
+  Eigen::MatrixXd eliminated_;  // sum over areas of sums sums^T / h
   double elastic_curvature_ = 0;
   Eigen::VectorXd right_;
   Eigen::FullPivLU<Eigen::MatrixXd> schur_;

@@ -88,7 +88,7 @@ class InteriorPoint {
   bool factorise() {
     regularisation_ = inertia_.first();
     for (factorisations_ = 1;; ++factorisations_) {
-      kkt_.assemble(iterate_, barrier_.value(), regularisation_);
+      kkt_.assemble(iterate_, regularisation_);
       if (kkt_.factorise()) break;
       if (options_.cancelled()) return false;
       const auto stronger = inertia_.next();
@@ -99,8 +99,9 @@ class InteriorPoint {
     return true;
   }
 
-  NewtonStep newton_step() const {
-    NewtonStep step = complete_step(program_, layout_, iterate_, barrier_.value(), kkt_.solve());
+  NewtonStep newton_step() {
+    const double barrier = barrier_.value();
+    NewtonStep step = complete_step(program_, layout_, iterate_, barrier, kkt_.solve(iterate_, barrier));
     step.primal_length = longest(iterate_.slacks, step.slacks, barrier_.fraction_to_boundary());
     step.dual_length = longest(iterate_.duals, step.duals, barrier_.fraction_to_boundary());
     return step;

@@ -11,13 +11,55 @@ using Eigen::VectorXd;
 constexpr int kRefinements = 2;
 constexpr double kRefinedEnough = 1e-11;
 
+// What takes the place of the duals when slacks and duals are condensed: mu / s + Sigma (c + s); z for
+// the dense rows.
+VectorXd condensed_duals(const FrameProgram& program, const InequalityLayout& layout, const Iterate& it,
+                         double barrier) {
+  const VectorXd c = inequalities(program, layout, it.point);
+  VectorXd pulls = (barrier + it.duals.array() * (c + it.slacks).array()) / it.slacks.array();
+  pulls.tail(layout.row_count) = it.duals.tail(layout.row_count);
+  return pulls;
+}
+
 }  // namespace
 
 bool KktSystem::factorise() {
   return matrix_.factorise() && matrix_.inertia() == wanted_ && rows_.factorise(matrix_);
 }
 
-KktStep KktSystem::solve() const {
+void KktSystem::set_right_hand_side(const Iterate& it, double barrier) {
+  const ProgramVector gradient =
+      lagrangian_gradient(program_, layout_, it.point, condensed_duals(program_, layout_, it, barrier));
+  right_hand_side_.resize(matrix_.rows());
+  for (int i = 0; i < program_.node_count(); ++i) {
+    const int first = matrix_.first_row(i);
+    for (int k = 0; k < cases_; ++k) {
+      right_hand_side_.segment<3>(first + 3 * k) = -gradient.displacements[k].col(i);
+      right_hand_side_.segment<3>(first + 3 * (cases_ + k)) = -gradient.multipliers[k].col(i);
+    }
+    if (program_.moves[i]) right_hand_side_.segment<3>(first + 6 * cases_) = -gradient.positions.col(i);
+  }
+  area_gradient_ = gradient.areas;
+  VectorXd sums = VectorXd::Zero(rows_.sums());
+  for (int j = 0; j < program_.strut_count(); ++j) {
+    if (program_.area_is_given(j)) continue;
+    const double share = gradient.areas[j] / curvatures_[j];
+    scatter_right(j, share * slopes_[j]);
+    sums += share * sums_.col(j);
+  }
+  rows_.set_right_hand_side(it, barrier, gradient.elastic, sums);
+}
+
+void KktSystem::scatter_right(int j, const VectorXd& coordinates) {
+  const auto [a, b] = program_.struts[j];
+  for (const auto& [end, sign] : {std::pair{a, -1.0}, std::pair{b, 1.0}})
+    for (const Axis& axis : axes_[end])
+      right_hand_side_[matrix_.first_row(end) + axis.row] +=
+          sign * coordinates[axis.difference] + (axis.sum >= 0 ? coordinates[axis.sum] : 0.0);
+}
+
+KktStep KktSystem::solve(const Iterate& it, double barrier) {
+  set_right_hand_side(it, barrier);
   const auto solve_once = [this](const VectorXd& y, const VectorXd& r, VectorXd& nodes, VectorXd& border) {
     nodes = y;
     matrix_.solve_in_place(nodes);

@@ -16,16 +16,6 @@ std::vector<int> node_block_rows(const FrameProgram& program) {
   return rows;
 }
 
-// What takes the place of the duals when slacks and duals are condensed: mu / s + Sigma (c + s); z for the
-// dense rows.
-VectorXd condensed_duals(const FrameProgram& program, const InequalityLayout& layout, const Iterate& it,
-                         double barrier) {
-  const VectorXd c = inequalities(program, layout, it.point);
-  VectorXd pulls = (barrier + it.duals.array() * (c + it.slacks).array()) / it.slacks.array();
-  pulls.tail(layout.row_count) = it.duals.tail(layout.row_count);
-  return pulls;
-}
-
 }  // namespace
 
 KktSystem::KktSystem(const FrameProgram& program, const InequalityLayout& layout,
@@ -60,39 +50,32 @@ void KktSystem::find_axes() {
   }
 }
 
-void KktSystem::assemble(const Iterate& it, double barrier, const Regularisation& regularisation) {
-  const ProgramVector gradient =
-      lagrangian_gradient(program_, layout_, it.point, condensed_duals(program_, layout_, it, barrier));
+void KktSystem::assemble(const Iterate& it, const Regularisation& regularisation) {
   matrix_.set_zero();
-  right_hand_side_ = VectorXd::Zero(matrix_.rows());
-  rows_.reset(matrix_.rows(), it, barrier, gradient.elastic, regularisation.primal);
-  area_gradient_ = gradient.areas;
+  rows_.reset(matrix_.rows(), it, regularisation.primal);
   const VectorXd pull = rows_.pull(it);
   for (int j = 0; j < program_.strut_count(); ++j) {
     terms_of_.compute(j, it, pull, regularisation.primal, scratch_);
-    eliminate_area(j, gradient.areas[j], scratch_);
+    eliminate_area(j, scratch_);
+    scatter(j, scratch_);
   }
-  add_nodes(it, gradient, regularisation);
+  add_nodes(it, regularisation);
   add_half_spaces(it);
 }
 
-void KktSystem::eliminate_area(int j, double gradient, StrutTerms& terms) {
+void KktSystem::eliminate_area(int j, StrutTerms& terms) {
   slopes_[j] = terms.slope;
   curvatures_[j] = terms.curvature;
   sums_.col(j) = terms.sums;
   rows_.add_elastic(terms.elastic);
-  VectorXd moved = VectorXd::Zero(terms.slope.size());
-  if (!program_.area_is_given(j)) {
-    const double inverse = 1 / terms.curvature;
-    terms.hessian.noalias() -= inverse * terms.slope * terms.slope.transpose();
-    terms.border.leftCols(rows_.sums()).noalias() -= inverse * terms.slope * terms.sums.transpose();
-    moved = inverse * gradient * terms.slope;
-    rows_.eliminate_area(terms.sums, terms.curvature, gradient);
-  }
-  scatter(j, terms, moved);
+  if (program_.area_is_given(j)) return;
+  const double inverse = 1 / terms.curvature;
+  terms.hessian.noalias() -= inverse * terms.slope * terms.slope.transpose();
+  terms.border.leftCols(rows_.sums()).noalias() -= inverse * terms.slope * terms.sums.transpose();
+  rows_.eliminate_area(terms.sums, terms.curvature);
 }
 
-void KktSystem::scatter(int j, const StrutTerms& terms, const VectorXd& right_hand_side) {
+void KktSystem::scatter(int j, const StrutTerms& terms) {
   const int ends[2] = {program_.struts[j].first, program_.struts[j].second};
   const MatrixXd& h = terms.hessian;
   const auto entry = [&h](const Axis& r, double row_sign, const Axis& c, double column_sign) {
@@ -108,8 +91,6 @@ void KktSystem::scatter(int j, const StrutTerms& terms, const VectorXd& right_ha
     const int first = matrix_.first_row(ends[end]);
     for (const Axis& c : axes_[ends[end]]) {
       for (const Axis& r : axes_[ends[end]]) block(r.row, c.row) += entry(r, sign, c, sign);
-      right_hand_side_[first + c.row] +=
-          sign * right_hand_side[c.difference] + (c.sum >= 0 ? right_hand_side[c.sum] : 0.0);
       for (Eigen::Index q = 0; q < terms.border.cols(); ++q)
         rows_.border()(first + c.row, q) +=
             sign * terms.border(c.difference, q) + (c.sum >= 0 ? terms.border(c.sum, q) : 0.0);
@@ -120,24 +101,18 @@ void KktSystem::scatter(int j, const StrutTerms& terms, const VectorXd& right_ha
     for (const Axis& r : axes_[ends[0]]) block(r.row, c.row) += entry(r, -1, c, 1);
 }
 
-void KktSystem::add_nodes(const Iterate& it, const ProgramVector& gradient,
-                          const Regularisation& regularisation) {
+void KktSystem::add_nodes(const Iterate& it, const Regularisation& regularisation) {
   for (int i = 0; i < program_.node_count(); ++i) {
     BlockLdlt::Block block = matrix_.node_block(i);
-    const int first = matrix_.first_row(i);
     for (int k = 0; k < cases_; ++k) {
       const int d = 3 * k, lambda = 3 * (cases_ + k);
-      right_hand_side_.segment<3>(first + d) -= gradient.displacements[k].col(i);
-      right_hand_side_.segment<3>(first + lambda) -= gradient.multipliers[k].col(i);
       block.block<3, 3>(d, d) += regularisation.primal * Matrix3d::Identity();
       block.block<3, 3>(lambda, lambda) -= regularisation.dual * Matrix3d::Identity();
       if (program_.squared_displacement_limit) add_displacement_limit(k, i, it);
     }
     hold_fixed_axes(i);
-    if (!program_.moves[i]) continue;
-    const int x = 6 * cases_;
-    block.block<3, 3>(x, x) += regularisation.primal * Matrix3d::Identity();
-    right_hand_side_.segment<3>(first + x) -= gradient.positions.col(i);
+    if (program_.moves[i])
+      block.block<3, 3>(6 * cases_, 6 * cases_) += regularisation.primal * Matrix3d::Identity();
   }
 }
 
@@ -164,7 +139,6 @@ void KktSystem::hold_fixed_axes(int i) {
         block.row(row).setZero();
         block.col(row).setZero();
         block(row, row) = pivot;
-        right_hand_side_[first + row] = 0;
         rows_.border().row(first + row).setZero();
       }
     }

@@ -45,9 +45,11 @@ class KktSystem {
   KktSystem(const FrameProgram& program, const InequalityLayout& layout,
             std::shared_ptr<ThreadTeam> team = nullptr, std::function<bool()> cancelled = {});
 
-  void assemble(const Iterate& iterate, double barrier, const Regularisation& regularisation);
-  bool factorise();       // false: singular, the wrong inertia, or cancelled
-  KktStep solve() const;  // refined against the assembled matrix
+  void assemble(const Iterate& iterate, const Regularisation& regularisation);
+  bool factorise();  // false: singular, the wrong inertia, or cancelled
+  // The Newton step towards this barrier from the iterate of assemble(), refined against the assembled
+  // matrix.
+  KktStep solve(const Iterate& iterate, double barrier);
 
  private:
   // One free axis of a node: its row in the node's block and the strut coordinates it moves, as
@@ -57,12 +59,14 @@ class KktSystem {
   };
 
   void find_axes();
-  void eliminate_area(int strut, double gradient, StrutTerms& terms);
-  void scatter(int strut, const StrutTerms& terms, const Eigen::VectorXd& right_hand_side);
-  void add_nodes(const Iterate& iterate, const ProgramVector& gradient, const Regularisation& regularisation);
+  void eliminate_area(int strut, StrutTerms& terms);
+  void scatter(int strut, const StrutTerms& terms);
+  void add_nodes(const Iterate& iterate, const Regularisation& regularisation);
   void add_displacement_limit(int load_case, int node, const Iterate& iterate);
   void hold_fixed_axes(int node);
   void add_half_spaces(const Iterate& iterate);
+  void set_right_hand_side(const Iterate& iterate, double barrier);
+  void scatter_right(int strut, const Eigen::VectorXd& coordinates);
   ProgramVector step_of(const Eigen::VectorXd& nodes, const Eigen::VectorXd& border) const;
 
   const FrameProgram& program_;

@@ -159,9 +159,9 @@ TEST_P(FrameProgramOf, NewtonStepLowersEveryKktEquationAlike) {
   Iterate it{sample_point(p), VectorXd::LinSpaced(at.count, 0.6, 1.4),
              VectorXd::LinSpaced(at.count, 1.5, 0.4)};
   KktSystem kkt(p, at);
-  kkt.assemble(it, mu, {});
+  kkt.assemble(it, {});
   kkt.factorise();  // the step is the Newton step whatever the inertia is
-  const NewtonStep direction = complete_step(p, at, it, mu, kkt.solve());
+  const NewtonStep direction = complete_step(p, at, it, mu, kkt.solve(it, mu));
 
   const VectorXd before = kkt_equations(p, at, it, mu);
   const auto remainder = [&](double h) {
