@@ -24,7 +24,7 @@ VectorXd condensed_duals(const FrameProgram& program, const InequalityLayout& la
 }  // namespace
 
 bool KktSystem::factorise() {
-  return matrix_.factorise() && matrix_.inertia() == wanted_ && rows_.factorise(matrix_);
+  return matrix_.factorise() && rows_.factorise(matrix_) && matrix_.inertia() == wanted_;
 }
 
 void KktSystem::set_right_hand_side(const Iterate& it, double barrier) {

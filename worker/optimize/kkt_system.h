@@ -46,7 +46,8 @@ class KktSystem {
             std::shared_ptr<ThreadTeam> team = nullptr, std::function<bool()> cancelled = {});
 
   void assemble(const Iterate& iterate, const Regularisation& regularisation);
-  bool factorise();  // false: singular, the wrong inertia, or cancelled
+  // False: singular, the wrong inertia, or cancelled. After the wrong inertia alone solve() still serves.
+  bool factorise();
   // The Newton step towards this barrier from the iterate of assemble(), refined against the assembled
   // matrix.
   KktStep solve(const Iterate& iterate, double barrier);
