@@ -40,8 +40,9 @@ RandomMatrix random_matrix(int blocks, int edges, unsigned seed) {
   return m;
 }
 
-BlockLdlt load(const RandomMatrix& m) {
-  BlockLdlt matrix(m.block_rows, m.edges);
+BlockLdlt load(const RandomMatrix& m, std::shared_ptr<ThreadTeam> team = nullptr,
+               std::function<bool()> cancelled = {}) {
+  BlockLdlt matrix(m.block_rows, m.edges, std::move(team), std::move(cancelled));
   matrix.set_zero();
   for (std::size_t i = 0; i < m.node_blocks.size(); ++i)
     matrix.node_block(static_cast<int>(i)) += m.node_blocks[i];
@@ -108,6 +109,50 @@ TEST(BlockLdlt, SingularMatrixIsReported) {
   BlockLdlt matrix({2, 2}, {{0, 1}});
   matrix.set_zero();
   EXPECT_FALSE(matrix.factorise());
+}
+
+// A complete graph is one front, wider than one block of pivots.
+TEST(BlockLdlt, WideFrontIsFactorisedBlockByBlock) {
+  const RandomMatrix m = random_matrix(60, 60 * 59 / 2, 5);
+  BlockLdlt matrix = load(m);
+  ASSERT_GT(matrix.rows(), 2 * kPivotBlock);
+  const MatrixXd full = dense(m, matrix);
+  ASSERT_TRUE(matrix.factorise());
+  const VectorXd eigenvalues = Eigen::SelfAdjointEigenSolver<MatrixXd>(full).eigenvalues();
+  EXPECT_EQ(matrix.inertia().positive, (eigenvalues.array() > 0).count());
+  const MatrixXd wanted = MatrixXd::Random(matrix.rows(), 3);
+  MatrixXd solved = full * wanted;
+  matrix.solve_in_place(solved);
+  EXPECT_LT((solved - wanted).norm(), 1e-8 * wanted.norm());
+}
+
+TEST(BlockLdlt, SameBitsAtAnyNumberOfThreads) {
+  use_one_blas_thread();
+  const RandomMatrix m = random_matrix(400, 1600, 9);
+  MatrixXd first;
+  for (int threads : {1, 2, 3}) {
+    BlockLdlt matrix = load(m, std::make_shared<ThreadTeam>(threads));
+    ASSERT_TRUE(matrix.factorise());
+    MatrixXd solved = MatrixXd::Ones(matrix.rows(), 1);
+    matrix.solve_in_place(solved);
+    if (threads == 1) first = solved;
+    EXPECT_TRUE((solved.array() == first.array()).all()) << threads << " threads";
+  }
+}
+
+// Between two questions lies one front: no more than a few milliseconds' work in frames of ten thousand
+// nodes.
+TEST(BlockLdlt, CancellationIsAskedOfEveryFront) {
+  const RandomMatrix m = random_matrix(400, 1600, 9);
+  int asked = 0, allowed = 1 << 30;
+  BlockLdlt matrix = load(m, nullptr, [&] { return ++asked > allowed; });
+  ASSERT_TRUE(matrix.factorise());
+  EXPECT_GT(asked, 20);
+  allowed = asked / 2;
+  asked = 0;
+  EXPECT_FALSE(matrix.factorise());
+  EXPECT_GT(asked, allowed);
+  EXPECT_LE(asked, allowed + kLanes) << "each lane hears it once at most, and goes no further";
 }
 
 TEST(BlockLdlt, EmptyBlocksAreNoTrouble) {

@@ -47,7 +47,12 @@ FrameProgram sample_program(ElasticScope elastic) {
   p.slenderness_area = 0.1;
   p.squared_min_length = VectorXd::Constant(9, 0.2);
   p.half_spaces = {{3, Vector3d(1, 0.2, 0).normalized(), 3}, {4, Vector3d(0, -1, 0.4).normalized(), 4}};
-  p.balance = {{Vector3d(1, 0, 0), 2.0, 0.3, 0.4}, {Vector3d(-0.6, 0.8, 0), 2.5, -0.2, 0.4}};
+  // More rows than the three sums that carry them.
+  p.balance = {{Vector3d(1, 0, 0), 2.0, 0.3, 0.4},
+               {Vector3d(-0.6, 0.8, 0), 2.5, -0.2, 0.4},
+               {Vector3d(0, -1, 0), 1.5, 0.1, 0.3},
+               {Vector3d(0.8, 0.6, 0), 1.9, -0.1, 0.5},
+               {Vector3d(-1, 0, 0), 0.7, 0.2, 0.4}};
   p.volume_cap = 14.0;
   return p;
 }
@@ -122,17 +127,63 @@ TEST_P(FrameProgramOf, GradientIsTheDerivativeOfTheLagrangian) {
   EXPECT_LT(fine, 0.27 * coarse + 1e-10);
 }
 
+// Every coordinate of the program that may change.
+std::vector<double*> coordinates(const FrameProgram& p, ProgramVector& v) {
+  std::vector<double*> all;
+  for (int j = 0; j < p.strut_count(); ++j)
+    if (!p.area_is_given(j)) all.push_back(&v.areas[j]);
+  for (int i = 0; i < p.node_count(); ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      if (p.moves[i]) all.push_back(&v.positions(axis, i));
+      for (int k = 0; k < p.case_count() && !p.fixed[i][axis]; ++k) {
+        all.push_back(&v.displacements[k](axis, i));
+        all.push_back(&v.multipliers[k](axis, i));
+      }
+    }
+  if (p.elastic != ElasticScope::kNone) all.push_back(&v.elastic);
+  return all;
+}
+
+// The error of a central difference falls by four when the step is halved: along every single coordinate.
+TEST_P(FrameProgramOf, GradientIsRightInEveryCoordinate) {
+  const FrameProgram p = sample_program(GetParam());
+  const InequalityLayout at(p);
+  ProgramVector v = sample_point(p);
+  const VectorXd weights = VectorXd::LinSpaced(at.count, 0.1, 1.2);
+  ProgramVector gradient = lagrangian_gradient(p, at, v, weights);
+  const std::vector<double*> points = coordinates(p, v), slopes = coordinates(p, gradient);
+  ASSERT_EQ(points.size(), slopes.size());
+  for (std::size_t q = 0; q < points.size(); ++q) {
+    const double here = *points[q];
+    const auto error = [&](double h) {
+      *points[q] = here + h;
+      const double up = lagrangian(p, at, v, weights);
+      *points[q] = here - h;
+      const double down = lagrangian(p, at, v, weights);
+      *points[q] = here;
+      return std::abs((up - down) / (2 * h) - *slopes[q]);
+    };
+    EXPECT_LT(error(1e-2), 0.27 * error(2e-2) + 1e-10) << "coordinate " << q;
+  }
+}
+
+// Each inequality on its own, with the same check of the order.
 TEST_P(FrameProgramOf, SlopesAreTheDerivativesOfInequalitiesAndObjective) {
   const FrameProgram p = sample_program(GetParam());
   const InequalityLayout at(p);
   const ProgramVector v = sample_point(p), d = sample_direction(p);
-  ProgramVector up = v, down = v;
-  const double h = 1e-5;
-  up.add(h, d);
-  down.add(-h, d);
-  const VectorXd difference = (inequalities(p, at, up) - inequalities(p, at, down)) / (2 * h);
-  EXPECT_LT((difference - inequality_slopes(p, at, v, d)).lpNorm<Eigen::Infinity>(), 1e-7);
-  EXPECT_NEAR((objective(p, up) - objective(p, down)) / (2 * h), objective_slope(p, v, d), 1e-7);
+  const VectorXd slopes = inequality_slopes(p, at, v, d);
+  const auto errors = [&](double h) {
+    ProgramVector up = v, down = v;
+    up.add(h, d);
+    down.add(-h, d);
+    VectorXd all(at.count + 1);
+    all << (inequalities(p, at, up) - inequalities(p, at, down)) / (2 * h) - slopes,
+        (objective(p, up) - objective(p, down)) / (2 * h) - objective_slope(p, v, d);
+    return VectorXd(all.cwiseAbs());
+  };
+  const VectorXd coarse = errors(2e-2), fine = errors(1e-2);
+  for (Eigen::Index i = 0; i < fine.size(); ++i) EXPECT_LT(fine[i], 0.27 * coarse[i] + 1e-11) << i;
 }
 
 // All equations of the perturbed KKT system, stacked.
@@ -174,6 +225,20 @@ TEST_P(FrameProgramOf, NewtonStepLowersEveryKktEquationAlike) {
   const double coarse = remainder(2e-4), fine = remainder(1e-4);
   EXPECT_LT(fine, 0.26 * coarse + 1e-10) << coarse << " -> " << fine;
   EXPECT_LT(fine, 1e-3 * before.norm());
+}
+
+// The Hessian in positions and the bilinear equilibrium are indefinite. Strong duals of the bounds and a
+// strong regularisation make the signs right; multipliers that outweigh them make them wrong.
+TEST_P(FrameProgramOf, InertiaIsRefusedWhereTheProgramCurvesDownAndAcceptedOnceRegularised) {
+  const FrameProgram p = sample_program(GetParam());
+  const InequalityLayout at(p);
+  Iterate it{sample_point(p), VectorXd::Constant(at.count, 1.0), VectorXd::Constant(at.count, 1e-3)};
+  for (NodeMatrix& multipliers : it.point.multipliers) multipliers *= 30;
+  KktSystem kkt(p, at);
+  kkt.assemble(it, {});
+  EXPECT_FALSE(kkt.factorise());
+  kkt.assemble(it, {1e4, 1e-8});
+  EXPECT_TRUE(kkt.factorise());
 }
 
 INSTANTIATE_TEST_SUITE_P(Elastic, FrameProgramOf,
