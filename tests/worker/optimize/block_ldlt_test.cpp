@@ -140,8 +140,8 @@ TEST(BlockLdlt, SameBitsAtAnyNumberOfThreads) {
   }
 }
 
-// Between two questions lies one front: no more than a few milliseconds' work in frames of ten thousand
-// nodes.
+// Between two questions lies one front: milliseconds in frames of two thousand nodes, and a good part of a
+// second for the widest one of ten thousand.
 TEST(BlockLdlt, CancellationIsAskedOfEveryFront) {
   const RandomMatrix m = random_matrix(400, 1600, 9);
   int asked = 0, allowed = 1 << 30;
