@@ -12,6 +12,10 @@
 namespace skinframe::check {
 namespace {
 
+// The axis of an internal strut leaves a skin node at this slope at least: only beyond r / slope from it the
+// strut has to be clear of the skin by its radius.
+constexpr double kLeavingSlope = 0.2;
+
 double length_mm(const ExportedFrame& frame, const ExportedStrut& s) {
   return (frame.nodes_mm[s.b] - frame.nodes_mm[s.a]).norm();
 }
@@ -136,10 +140,13 @@ void claim_inside(const ExportedPrinter& result, const Surface& outer, Verdict* 
   const ExportedFrame& frame = result.frame;
   // The sampling grid of M1 is about 1 mm wide at 200 mm; the surface stands within a fraction of it.
   const double tolerance = 0.25 * result.skin_thickness_mm;
+  // On large bodies the grid is as wide as the skin, and what is read off it a third of that.
+  const double clearance_tolerance = 0.4 * result.skin_thickness_mm;
   std::vector<bool> is_skin(frame.nodes_mm.size(), false);
   for (const auto& t : frame.skin_triangles)
     for (const int v : t) is_skin[v] = true;
   double worst_internal = std::numeric_limits<double>::infinity(), worst_bridge = worst_internal;
+  double worst_clearance = worst_internal;  // of a strut with its radius, against M1
   std::size_t internal = 0, bridges = 0, skin = 0;
   int leaving = 0;
   double furthest_out = 0;
@@ -147,8 +154,17 @@ void claim_inside(const ExportedPrinter& result, const Surface& outer, Verdict* 
     const Eigen::Vector3d &a = frame.nodes_mm[s.a], &b = frame.nodes_mm[s.b];
     const int steps = s.skin ? 4 : std::max(4, static_cast<int>(std::ceil((b - a).norm())));
     double least = std::numeric_limits<double>::infinity();
-    for (int k = 0; k <= steps; ++k)
-      least = std::min(least, outer.depth_mm(a + (b - a) * (double(k) / steps)));
+    double clearance = least;
+    for (int k = 0; k <= steps; ++k) {
+      const double t = double(k) / steps, depth = outer.depth_mm(a + (b - a) * t);
+      least = std::min(least, depth);
+      // Where it grows out of the skin a strut cannot be clear of it.
+      double from_skin = std::numeric_limits<double>::infinity();
+      if (is_skin[s.a]) from_skin = std::min(from_skin, t * (b - a).norm());
+      if (is_skin[s.b]) from_skin = std::min(from_skin, (1 - t) * (b - a).norm());
+      clearance = std::min(
+          clearance, depth - result.skin_thickness_mm - std::min(s.radius_mm, kLeavingSlope * from_skin));
+    }
     if (s.skin) {
       ++skin;
       if (least < -tolerance) ++leaving;
@@ -159,19 +175,22 @@ void claim_inside(const ExportedPrinter& result, const Surface& outer, Verdict* 
     } else {
       ++internal;
       worst_internal = std::min(worst_internal, least);
+      worst_clearance = std::min(worst_clearance, clearance);
     }
   }
   const double wanted = result.skin_thickness_mm - tolerance;
   verdict->claims.push_back(
       {"internal struts inside the skin",
-       (internal == 0 || worst_internal >= wanted) && (bridges == 0 || worst_bridge > 0),
+       (internal == 0 || (worst_internal >= wanted && worst_clearance >= -clearance_tolerance)) &&
+           (bridges == 0 || worst_bridge > 0),
        internal + bridges == 0
            ? std::string("there are none")
            : fmt::format(
-                 "{} struts, the shallowest axis {:.3f} mm below the surface (at least {:.3f}); {} struts "
-                 "between "
-                 "skin nodes{}",
-                 internal, internal == 0 ? 0.0 : worst_internal, wanted, bridges,
+                 "{} struts, the shallowest axis {:.3f} mm below the surface (at least {:.3f}), the least "
+                 "clearance of a strut's own radius from the skin's inside {:.3f} mm (at least {:.3f}); {} "
+                 "struts between skin nodes{}",
+                 internal, internal == 0 ? 0.0 : worst_internal, wanted,
+                 internal == 0 ? 0.0 : worst_clearance, -clearance_tolerance, bridges,
                  bridges == 0 ? "" : fmt::format(", shallowest {:.3f} mm (more than 0)", worst_bridge))});
   const std::string followed = fmt::format(
       "{} of {} skin struts leave the object between their nodes by more than {:.2f} mm{}, by {:.2f} "

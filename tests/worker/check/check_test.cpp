@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
@@ -159,6 +161,38 @@ TEST_F(CheckTest, AStrutThinnerThanThePrinterCanIsSeen) {
 
 TEST_F(CheckTest, AStrutTooThickForTheSkinIsSeen) {
   EXPECT_THAT(denied_frame([](json& frame) { frame["struts"][3]["radius_mm"] = 1.6; }), Names("radii"));
+}
+
+// A strut of the radius given that runs 3 mm below the first skin strut.
+void add_internal_strut(json& frame, double radius_mm) {
+  json& nodes = frame["nodes"];
+  const auto count = nodes.size();
+  std::array<double, 3> centre{};
+  for (const json& node : nodes)
+    for (int k = 0; k < 3; ++k) centre[k] += node[k].get<double>() / static_cast<double>(count);
+  for (const char* end : {"a", "b"}) {
+    json node = nodes[frame["struts"][0][end].get<std::size_t>()];
+    double distance = 0;
+    for (int k = 0; k < 3; ++k) distance += std::pow(centre[k] - node[k].get<double>(), 2);
+    for (int k = 0; k < 3; ++k)
+      node[k] = node[k].get<double>() + 3 / std::sqrt(distance) * (centre[k] - node[k].get<double>());
+    nodes.push_back(node);
+    frame["skin_weight_n"].push_back(0.0);
+    for (json& load_case : frame["load_cases"]) load_case["displacements_mm"].push_back({0.0, 0.0, 0.0});
+  }
+  frame["struts"].push_back({{"a", count},
+                             {"b", count + 1},
+                             {"skin", false},
+                             {"radius_mm", radius_mm},
+                             {"min_radius_mm", 0.5},
+                             {"max_radius_mm", 5.0}});
+}
+
+TEST_F(CheckTest, AnInternalStrutThatStandsOutOfTheInsideByItsRadiusIsSeen) {
+  EXPECT_THAT(denied_frame([](json& frame) { add_internal_strut(frame, 5.0); }),
+              Names("internal struts inside the skin"));
+  EXPECT_THAT(denied_frame([](json& frame) { add_internal_strut(frame, 0.5); }),
+              testing::Not(Names("internal struts inside the skin")));
 }
 
 TEST_F(CheckTest, ASlenderStrutIsSeen) {
