@@ -15,8 +15,8 @@
 namespace skinframe {
 namespace {
 
-constexpr int kMostTries = 3;
-constexpr double kFirstTolerance = 0.5;  // of the deviation; each try halves it
+constexpr int kMostTries = 2;
+constexpr double kFirstTolerance = 0.1;  // root mean square, of the deviation; each try halves it
 constexpr std::size_t kMostProbes = 200'000;
 
 TriangleMesh part_of(const TriangleMesh& mesh, std::size_t first, std::size_t last) {

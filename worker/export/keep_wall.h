@@ -6,13 +6,17 @@
 
 #include "worker/mesh/triangle_mesh.h"
 #include "worker/skin/build_skin.h"
+#include "worker/skin/triangle_tree.h"
 
 namespace skinframe {
 
 // Vertices of the cavity that stand nearer to M than the skin's thickness less kWallSlackInVoxels, by exact
 // distance, go back to that thickness, away from their nearest point of M. Coordinates stay exact floats.
-// Returns how many moved.
+// Returns how many moved. body: the triangles of M.
 inline constexpr double kWallSlackInVoxels = 0.1;
-int keep_wall(TriangleMesh& cavity, const TriangleMesh& closed_mesh, const Skin& skin, double voxel_mm);
+int keep_wall(TriangleMesh& cavity, const TriangleTree& body, const Skin& skin, double voxel_mm);
+
+// The same for one vertex; true when it moved.
+bool keep_wall(Eigen::Vector3d& vertex_mm, const TriangleTree& body, double thickness_mm, double slack_mm);
 
 }  // namespace skinframe

@@ -20,6 +20,7 @@
 #include "worker/skin/distance_grids.h"
 #include "worker/skin/level_set.h"
 #include "worker/skin/mend_edges.h"
+#include "worker/skin/triangle_tree.h"
 #include "worker/solid/solid.h"
 
 namespace skinframe {
@@ -29,9 +30,8 @@ constexpr double kBandVoxels = 3.0;
 constexpr double kMaxSurfaceSquares = 3e6;  // as in build_skin.cpp: some 600 MB while the grid is made
 constexpr double kFlatBandVoxels = 8.0;     // of the band beside the skin's own depth
 constexpr double kMaxBandVoxels = 3e6 * 24;
-constexpr double kVoxelInRadii = 0.6;  // of the thinnest strut
-// Of the thinning: a sum over planes, so the surface itself stays much nearer.
-constexpr double kThinningInVoxels = 0.3;
+constexpr double kVoxelInRadii = 0.6;      // of the thinnest strut
+constexpr double kThinningInVoxels = 0.1;  // root mean square over planes
 
 Result<double> choose_voxel(const ExportOptions& options, const Skin& skin,
                             const std::vector<double>& radii_mm, double area_mm2) {
@@ -139,11 +139,16 @@ Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Fr
     thin_out(cavity, options.max_triangles, kThinningInVoxels * *voxel);
   }
   steps.done("thin_out");
-  keep_wall(cavity, mesh, skin, *voxel);
+  const TriangleTree body(mesh);
+  keep_wall(cavity, body, skin, *voxel);
   manifold = manifold && mend_edges(cavity).manifold;  // places rounded to float may fall together
   if (context.cancelled()) return cancelled_error();
   steps.done("keep_wall");
-  result.crossings_left = untangle(cavity, context).crossings_left;
+  // What is taken apart keeps the wall too, with twice the slack so that there is room to move.
+  const auto hold = [&](Eigen::Vector3d& vertex) {
+    keep_wall(vertex, body, skin.thickness_mm, 2.0 * kWallSlackInVoxels * *voxel);
+  };
+  result.crossings_left = untangle(cavity, context, hold).crossings_left;
   if (context.cancelled()) return cancelled_error();
   steps.done("untangle");
   if (!manifold || count_bad_edges(cavity) > 0)

@@ -14,16 +14,18 @@ constexpr double kLeastTurnCosine = 0.5;
 constexpr double kLeastRoundness =
     0.1;  // 4 sqrt(3) area / sum of squared sides: 1 for an equilateral triangle
 
-// x^T A x + 2 b x + c: the sum of squared distances of x to planes.
+// x^T A x + 2 b x + c: the sum of squared distances of x to n planes.
 struct Quadric {
   Eigen::Matrix3f a = Eigen::Matrix3f::Zero();
   Eigen::Vector3f b = Eigen::Vector3f::Zero();
   float c = 0.0f;
+  float n = 0.0f;
 
   void operator+=(const Quadric& q) {
     a += q.a;
     b += q.b;
     c += q.c;
+    n += q.n;
   }
 };
 
@@ -55,8 +57,10 @@ class Thinning {
     const Eigen::Vector3d n =
         normal_of(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]).stableNormalized();
     const Eigen::Vector3f m = n.cast<float>();
-    for (int v : t)
+    for (int v : t) {
       quadrics_[v].a += m * m.transpose();  // the plane goes through the vertex itself: b = c = 0
+      quadrics_[v].n += 1.0f;
+    }
   }
 
   // The quadric of `v`, moved to the origin `o`.
@@ -103,6 +107,7 @@ class Thinning {
     Quadric q = about(u, middle);
     q += about(v, middle);
     if (q.c < 0.0f) q.c = 0.0f;
+    most *= q.n;
     Eigen::Vector3f x = Eigen::Vector3f::Zero();
     if (q.c > most) {
       // The middle is too far off: the best place there is, held near the edge where that is not unique.

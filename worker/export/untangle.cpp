@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/export/untangle.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <unordered_set>
 
@@ -11,8 +12,9 @@
 namespace skinframe {
 namespace {
 
-constexpr int kMostRounds = 24;
-constexpr int kRoundsARing = 3;  // after as many the next ring of neighbours moves too
+constexpr int kMostRounds = 12;
+constexpr int kRoundsARing = 2;  // after as many the next ring of neighbours moves too
+constexpr double kCellMm = 2.0;  // of the grid that finds who is near
 
 using Pairs = std::vector<std::pair<int, int>>;
 
@@ -32,7 +34,7 @@ void add_ring(const TriangleMesh& mesh, std::vector<char>& marked) {
   }
 }
 
-void relax(TriangleMesh& mesh, const std::vector<char>& marked) {
+void relax(TriangleMesh& mesh, const std::vector<char>& marked, const Hold& hold) {
   std::map<int, std::pair<Eigen::Vector3d, int>> sums;  // in order of the vertices
   for (const auto& t : mesh.triangles) {
     for (int k = 0; k < 3; ++k) {
@@ -45,50 +47,56 @@ void relax(TriangleMesh& mesh, const std::vector<char>& marked) {
   for (const auto& [v, mean] : sums) {
     const Eigen::Vector3d to = 0.5 * (mesh.vertices[v] + mean.first / mean.second);
     mesh.vertices[v] = to.cast<float>().cast<double>();
+    hold(mesh.vertices[v]);
   }
+}
+
+// The cells of that width which the triangle's box touches.
+template <class Visit>
+void for_each_cell(const TriangleMesh& mesh, const std::array<int, 3>& t, Visit visit) {
+  const auto &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+  const auto cell = [](const Eigen::Vector3d& p) -> Eigen::Vector3i {
+    return (p / kCellMm).array().floor().cast<int>();
+  };
+  const Eigen::Vector3i low = cell(a.cwiseMin(b).cwiseMin(c)), high = cell(a.cwiseMax(b).cwiseMax(c));
+  const auto bits = [](int x) { return static_cast<std::uint64_t>(x + (1 << 20)) & ((1u << 21) - 1); };
+  for (int x = low.x(); x <= high.x(); ++x)
+    for (int y = low.y(); y <= high.y(); ++y)
+      for (int z = low.z(); z <= high.z(); ++z)
+        if (!visit(bits(x) << 42 | bits(y) << 21 | bits(z))) return;
 }
 
 // All triangles that may meet one with a marked corner.
 std::vector<int> triangles_near(const TriangleMesh& mesh, const std::vector<char>& marked) {
-  double width = 0.0;
-  std::vector<int> moved;
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    const auto& p = mesh.vertices;
-    width = std::max({width, (p[a] - p[b]).norm(), (p[b] - p[c]).norm(), (p[c] - p[a]).norm()});
-    if (marked[a] || marked[b] || marked[c]) moved.push_back(t);
-  }
-  // Triangles that meet have corners no further apart than two of the longest edges.
-  width *= 2.0;
-  const auto cell = [&](int v) -> Eigen::Vector3i {
-    return (mesh.vertices[v] / width).array().floor().cast<int>();
-  };
-  const auto key = [](const Eigen::Vector3i& c) {
-    const auto bits = [](int x) { return static_cast<std::uint64_t>(x + (1 << 20)) & ((1u << 21) - 1); };
-    return bits(c.x()) << 42 | bits(c.y()) << 21 | bits(c.z());
-  };
   std::unordered_set<std::uint64_t> cells;
-  for (const int t : moved) {
-    const Eigen::Vector3i at = cell(mesh.triangles[t][0]);
-    for (int n = 0; n < 27; ++n) cells.insert(key(at + Eigen::Vector3i(n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1)));
+  for (const auto& t : mesh.triangles) {
+    if (!marked[t[0]] && !marked[t[1]] && !marked[t[2]]) continue;
+    for_each_cell(mesh, t, [&](std::uint64_t key) {
+      cells.insert(key);
+      return true;
+    });
   }
   std::vector<int> near;
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-    if (cells.contains(key(cell(mesh.triangles[t][0])))) near.push_back(t);
+  for (int i = 0; i < static_cast<int>(mesh.triangles.size()); ++i) {
+    for_each_cell(mesh, mesh.triangles[i], [&](std::uint64_t key) {
+      if (!cells.contains(key)) return true;
+      near.push_back(i);
+      return false;
+    });
   }
   return near;
 }
 
 }  // namespace
 
-Untangling untangle(TriangleMesh& mesh, const RunContext& context) {
+Untangling untangle(TriangleMesh& mesh, const RunContext& context, const Hold& hold) {
   Untangling result;
   Pairs pairs = crossing_triangles(mesh);
   result.crossings_found = static_cast<int>(pairs.size());
   for (int round = 0; round < kMostRounds && !pairs.empty() && !context.cancelled(); ++round) {
     std::vector<char> marked = corners_of(mesh, pairs);
     for (int ring = 0; ring < round / kRoundsARing; ++ring) add_ring(mesh, marked);
-    relax(mesh, marked);
+    relax(mesh, marked, hold);
     pairs = crossing_triangles(mesh, triangles_near(mesh, marked));
   }
   result.crossings_left = static_cast<int>(pairs.size());

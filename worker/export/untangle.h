@@ -6,6 +6,8 @@
 // stay, so a closed manifold stays one. Coordinates stay exact floats.
 #pragma once
 
+#include <functional>
+
 #include "worker/mesh/triangle_mesh.h"
 #include "worker/run/run_context.h"
 
@@ -16,6 +18,9 @@ struct Untangling {
   int crossings_left = 0;   // 0 but where the rounds did not do
 };
 
-Untangling untangle(TriangleMesh& mesh, const RunContext& context);
+// hold: called on each new place of a corner, may move it to where it is allowed to be, in exact floats.
+using Hold = std::function<void(Eigen::Vector3d&)>;
+Untangling untangle(
+    TriangleMesh& mesh, const RunContext& context, const Hold& hold = [](Eigen::Vector3d&) {});
 
 }  // namespace skinframe
