@@ -98,7 +98,7 @@ void add_job_options(CLI::App& verb, JobArguments& a) {
                   "Largest displacement in mm (default 0.05)");
   verb.add_option("--seed", a.seed, "Same seed, same result (default 1)");
   verb.add_option("--warm-start", a.warm_start,
-                  "Start from the frame of that earlier JOB of the same mesh (refused by workers so far)");
+                  "Start from the frame of that earlier JOB of the same mesh, wherever it still fits");
   verb.add_option("--label", a.labels, "KEY=VALUE, to find the job by; repeatable")->allow_extra_args(false);
   verb.add_option("--priority", a.priority, "-100 .. 100, higher runs earlier");
   verb.add_option("--deadline", a.deadline, "Give up after that time from submission: 90s, 15m, 2h");

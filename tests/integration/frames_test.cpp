@@ -98,6 +98,32 @@ TEST_F(Frames, TheFrameOfAMeshIsAProblemOfItsOwn) {
   EXPECT_LE(second, first * (1 + 1e-6)) << "the frame that was exported keeps its own limits";
 }
 
+TEST_F(Frames, AJobStartsFromAnEarlierOneOfTheSameMesh) {
+  Farm farm(scratch_);
+  farm.start_worker("only");
+  const std::string egg = scratch_ / "egg.stl";
+  ASSERT_EQ(skinframe({"sample", "egg", "--out", egg}).exit_code, 0);
+  const auto push = [&](const char* newtons) {
+    return std::vector<std::string>{egg,      "--printer", "sinterstation-hiq",
+                                    "--size", "60",        "--skin-nodes",
+                                    "60",     "--load",    std::string("side:top:") + newtons + ",0,0"};
+  };
+  const auto with = [](std::vector<std::string> words, const std::vector<std::string>& more) {
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  EXPECT_EQ(farm.ask(with({"submit"}, with(push("2"), {"--warm-start", "nobody"}))).exit_code, 9);
+  const std::string earlier = farm.submit(push("20"));
+  ASSERT_EQ(farm.ask({"watch", earlier}).exit_code, 0);
+  const Ran warm = farm.ask(
+      with({"submit"}, with(push("25"), {"--warm-start", earlier, "--watch", "--out", scratch_ / "warm"})));
+  ASSERT_EQ(warm.exit_code, 0) << warm.err;
+  const json start = read(scratch_ / "warm" / "report.json")["printers"][0]["warm_start"];
+  EXPECT_EQ(start["job_id"], earlier);
+  EXPECT_EQ(start["reused"], json({"sampled frame", "reduced frame", "radii"})) << start.dump();
+  EXPECT_EQ(skinframe({"check", scratch_ / "warm"}).exit_code, 0);
+}
+
 TEST_F(Frames, EachEndHasItsStateItsReasonAndItsExitCode) {
   Farm farm(scratch_);
   farm.start_worker("only");

@@ -132,6 +132,14 @@ JobOptions parse_options(const json& item) {
   return options;
 }
 
+EarlierJob parse_warm_start(const json& item) {
+  EarlierJob warm_start;
+  warm_start.job_id = item.at("job_id").get<std::string>();
+  for (const auto& [printer, path] : item.at("files").items())
+    warm_start.files.emplace(printer, path.get<std::string>());
+  return warm_start;
+}
+
 }  // namespace
 
 Result<JobFile> parse_job(const json& document) {
@@ -145,12 +153,12 @@ Result<JobFile> parse_job(const json& document) {
       file.frame_problem = document.at("frame_problem_path").get<std::string>();
       return file;
     }
-    if (is_given(document, "warm_start")) throw Refusal{unsupported("a warm start is not built yet")};
     request.mesh_path = document.at("mesh_path").get<std::string>();
     for (const json& item : document.at("printers")) request.printers.push_back(parse_printer(item));
     if (request.printers.empty()) refuse("printers is empty");
     for (const json& item : document.at("loads")) request.loads.push_back(parse_load(item));
     request.options = parse_options(document.at("options"));
+    if (is_given(document, "warm_start")) request.warm_start = parse_warm_start(document.at("warm_start"));
     return file;
   } catch (const Refusal& refusal) {
     return refusal.error;

@@ -97,7 +97,8 @@ class Algorithm {
 
   void size() {
     timed("size", Stage::kSize, [&] {
-      SizedFrame sized = size_frame(design_.problem, {}, session_, SizingEffort::kBestReachable);
+      SizedFrame sized = size_frame(design_.problem, areas_of(options_.hint_radii_mm), session_,
+                                    SizingEffort::kBestReachable);
       if (sized.cancelled) return;
       result_.violated_constraint = sized.violated_constraint;
       result_.certificate = std::move(sized.certificate);
@@ -217,6 +218,9 @@ Result<OptimizeResult> optimize_frame(const FrameProblem& problem, const Optimiz
                                       RunContext& context) {
   if (Status s = validate(problem); !s.ok()) return s.error();
   if (Status s = options.validate(); !s.ok()) return s.error();
+  if (!options.hint_radii_mm.empty() && options.hint_radii_mm.size() != problem.frame.struts.size())
+    return invalid_input(fmt::format("optimize options: {} hint_radii_mm for {} struts",
+                                     options.hint_radii_mm.size(), problem.frame.struts.size()));
   if (context.cancelled()) return cancelled_error();
   use_one_blas_thread();
   try {

@@ -51,6 +51,10 @@ struct OptimizeOptions {
   // change nothing else.
   bool bounds = true;
 
+  // Radii near the optimum, one a strut of the problem, where the first sizing starts; empty: none are known.
+  // They change the way and not the optimum, within the tolerances below; poor ones are not used.
+  std::vector<double> hint_radii_mm;
+
   // Interior point: scaled Karush-Kuhn-Tucker error <= kkt_tolerance (nondimensional problem), range (0,
   // 1e-3].
   double kkt_tolerance = 1e-7;

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 
+#include "worker/pipeline/earlier_frame.h"
 #include "worker/pipeline/fits_tray.h"
+#include "worker/pipeline/initial_frame.h"
 #include "worker/pipeline/make_solid.h"
 #include "worker/pipeline/pose_problem.h"
 #include "worker/pipeline/sample_by_stress.h"
@@ -43,6 +45,14 @@ PrinterReport begin_report(const PrinterRequest& request) {
   return report;
 }
 
+// What sampling would tell, of the frame that is taken over.
+Result<SampledFrame> sample_again(const InitialFrame& earlier, PrinterReport* report) {
+  const SampledFrame& sampled = earlier.sampled;
+  report->warnings.insert(report->warnings.end(), sampled.warnings.begin(), sampled.warnings.end());
+  report->sampling = sampling_facts(sampled, earlier.density);
+  return sampled;
+}
+
 }  // namespace
 
 Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const PrinterRequest& request,
@@ -71,7 +81,15 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
     return report;
   }
 
-  auto sampled = sample_by_stress(prepared, *skin, request, job, laps, &report, context);
+  const FrameOptions asked = frame_options(request, job);
+  const std::string key = sampling_key(*skin, asked, context);
+  std::optional<InitialFrame> earlier;
+  if (job.warm_start) {
+    report.warm_start = WarmStartReport{job.warm_start->job_id, {}, {}};
+    earlier = find_earlier_frame(*job.warm_start, printer.id, key, *skin, asked, &*report.warm_start);
+  }
+  auto sampled = earlier ? sample_again(*earlier, &report)
+                         : sample_by_stress(prepared, *skin, request, job, laps, &report, context);
   if (!sampled) return sampled.error();
 
   const BalanceState balance = decide_balance(job.options.balance, prepared.contact);
@@ -91,9 +109,23 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
                     "balance is not enforced (see --up and --balance)",
                     -prepared.contact.margin_mm));
 
-  auto merged = solve_and_merge({prepared, *skin, job.options, balance, laps},
-                                std::move(posed.value().problem), &report, context);
+  SolveSetting setting{prepared, *skin, job.options, balance, laps, std::nullopt};
+  if (earlier && earlier->reduced && !job.options.no_optimize) {
+    SampledFrame reduced = *sampled;
+    reduced.frame = earlier->reduced->frame;
+    auto again =
+        pose_problem(prepared.solid, prepared.contact, *skin, reduced, request, job.loads, job.options);
+    if (again) {
+      setting.start.emplace(ReducedStart{*earlier, std::move(again.value().problem)});
+    } else {
+      report.warm_start->detail = "its reduced frame does not fit: " + again.error().message;
+    }
+  }
+  auto merged = solve_and_merge(setting, posed->problem, &report, context);
   if (!merged) return merged.error();
+  if (report.warm_start && !report.warm_start->detail.empty())
+    report.warnings.push_back(
+        fmt::format("warm start from job {}: {}", report.warm_start->job_id, report.warm_start->detail));
 
   const OptimizeResult& result = *report.optimised;
   report.seconds.insert(result.seconds.begin(), result.seconds.end());
@@ -102,6 +134,11 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
   if (result.certificate) frame_json["certificate"] = certificate_json(*result.certificate);
   if (auto written = write_json(folder / "frame.json", frame_json); !written) return written.error();
   report.files.push_back("frame.json");
+  const bool optimised = report.reason == Reason::kNone && !job.options.no_optimize;
+  auto initial = initial_frame_json(posed->problem, *sampled, report.sampling->density, key,
+                                    optimised ? &result : nullptr);
+  if (auto written = write_json(folder / "initial-frame.json", initial); !written) return written.error();
+  report.files.push_back("initial-frame.json");
   if (!merged.value()) return report;
   const PrintableMesh& printable = *merged.value();
   if (auto written = write_printable(printable, prepared, request, folder, &report, context); !written)

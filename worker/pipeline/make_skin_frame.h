@@ -8,8 +8,8 @@
 namespace skinframe {
 
 // A report for every ending that is one of the work (done, infeasible); what was written, it tells. With
-// kInfeasible the folder holds frame.json alone: the best frame that was found. Errors: what could not be
-// tried.
+// kInfeasible the folder holds frame.json, the best frame that was found, and initial-frame.json, but no
+// mesh. Errors: what could not be tried.
 Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const PrinterRequest& printer,
                                       const JobRequest& request, const std::filesystem::path& out_dir,
                                       const PipelineObserver& observer, const RunContext& shared);

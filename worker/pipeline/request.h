@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -61,6 +62,12 @@ struct JobOptions {
   std::uint64_t seed = 1;
 };
 
+// An earlier job of the same mesh, and the initial-frame.json of each of its printers.
+struct EarlierJob {
+  std::string job_id;
+  std::map<std::string, std::filesystem::path> files;  // by printer id
+};
+
 struct JobRequest {
   std::string job_id;
   std::filesystem::path mesh_path;
@@ -68,6 +75,7 @@ struct JobRequest {
   std::vector<PrinterRequest> printers;
   std::vector<Load> loads;
   JobOptions options;
+  std::optional<EarlierJob> warm_start;
 };
 
 }  // namespace skinframe

@@ -22,9 +22,22 @@ std::vector<StressLoad> stress_loads(const std::vector<Load>& loads, const Solid
   return out;
 }
 
-SamplingFacts facts_of(const SampledFrame& sampled, const std::optional<StressMap>& stress) {
+}  // namespace
+
+FrameOptions frame_options(const PrinterRequest& request, const JobRequest& job) {
+  FrameOptions options;
+  options.skin_nodes = job.options.skin_nodes;
+  options.internal_nodes = job.options.internal_nodes;
+  options.plate.tensile_modulus_mpa = request.material.tensile_modulus_mpa;
+  options.plate.displacement_limit_mm = job.options.displacement_limit_mm;
+  options.strut_radius_mm = request.printer.min_radius_mm;
+  options.slenderness = request.material.slenderness;
+  return options;
+}
+
+SamplingFacts sampling_facts(const SampledFrame& sampled, const std::string& density) {
   SamplingFacts facts;
-  facts.density = stress ? "stress+curvature" : "curvature";
+  facts.density = density;
   facts.skin_nodes_requested = sampled.skin_nodes_requested;
   facts.skin_nodes_sampled = sampled.skin_nodes_sampled;
   facts.skin_nodes = sampled.frame.skin_node_count;
@@ -34,14 +47,8 @@ SamplingFacts facts_of(const SampledFrame& sampled, const std::optional<StressMa
   facts.worst_inward_chord_mm = sampled.worst_inward_chord_mm;
   facts.skin_struts_outside = sampled.skin_struts_outside;
   facts.struts_left_out_crossing = sampled.struts_left_out_crossing;
-  if (stress) {
-    facts.stress_tetrahedra = stress->tetrahedra();
-    facts.stress_largest_mpa = stress->largest_mpa();
-  }
   return facts;
 }
-
-}  // namespace
 
 Result<SampledFrame> sample_by_stress(const PreparedSolid& prepared, const Skin& skin,
                                       const PrinterRequest& request, const JobRequest& job, Laps& laps,
@@ -65,18 +72,16 @@ Result<SampledFrame> sample_by_stress(const PreparedSolid& prepared, const Skin&
   laps.lap("stress");
 
   context.report({.stage = Stage::kSample});
-  FrameOptions options;
-  options.skin_nodes = job.options.skin_nodes;
-  options.internal_nodes = job.options.internal_nodes;
-  options.plate.tensile_modulus_mpa = request.material.tensile_modulus_mpa;
-  options.plate.displacement_limit_mm = job.options.displacement_limit_mm;
-  options.strut_radius_mm = request.printer.min_radius_mm;
-  options.slenderness = request.material.slenderness;
+  FrameOptions options = frame_options(request, job);
   options.stress = stress ? &*stress : nullptr;
   auto sampled = sample_frame(skin, options, context);
   if (!sampled) return sampled.error();
   report->warnings.insert(report->warnings.end(), sampled->warnings.begin(), sampled->warnings.end());
-  report->sampling = facts_of(*sampled, stress);
+  report->sampling = sampling_facts(*sampled, stress ? "stress+curvature" : "curvature");
+  if (stress) {
+    report->sampling->stress_tetrahedra = stress->tetrahedra();
+    report->sampling->stress_largest_mpa = stress->largest_mpa();
+  }
   laps.lap("sample");
   return sampled;
 }

@@ -12,6 +12,12 @@
 
 namespace skinframe {
 
+// What the job asks of its frame, but for the stress map.
+FrameOptions frame_options(const PrinterRequest& request, const JobRequest& job);
+
+// density: "stress+curvature" or "curvature".
+SamplingFacts sampling_facts(const SampledFrame& sampled, const std::string& density);
+
 // Fills the report's sampling facts, its warnings, and the seconds of "stress" and "sample".
 Result<SampledFrame> sample_by_stress(const PreparedSolid& prepared, const Skin& skin,
                                       const PrinterRequest& request, const JobRequest& job, Laps& laps,

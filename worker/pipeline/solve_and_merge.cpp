@@ -87,8 +87,9 @@ void fill_statistics(const SolveSetting& setting, PrinterReport* report) {
 }
 
 // Fills the report's optimiser part: the optimised frame, or the one at its lower bounds.
-Status solve_frame(const FrameProblem& problem, const JobOptions& options, const Skin& skin,
-                   PrinterReport* report, RunContext& context) {
+Status solve_frame(const FrameProblem& problem, const SolveSetting& setting, PrinterReport* report,
+                   RunContext& context) {
+  const JobOptions& options = setting.options;
   if (options.no_optimize) {
     report->optimised = at_lower_bounds(problem);
     report->termination = "NOT_OPTIMIZED";
@@ -97,7 +98,13 @@ Status solve_frame(const FrameProblem& problem, const JobOptions& options, const
   }
   context.report({.stage = Stage::kSize, .struts_left = static_cast<int>(problem.frame.struts.size())});
   if (context.cancelled()) return cancelled_error();
-  auto optimised = optimize_frame(problem, optimize_options(options, skin), context);
+  const OptimizeOptions how = optimize_options(options, setting.skin);
+  auto optimised = [&] {
+    if (!setting.start) return optimize_frame(problem, how, context);
+    FrameProblem reduced = setting.start->problem;
+    reduced.balance = problem.balance;  // drawn in from round to round
+    return optimize_from(setting.start->earlier, reduced, problem, how, &*report->warm_start, context);
+  }();
   if (!optimised) return optimised.error();
   report->optimised = std::move(optimised).value();
   report->termination = termination_name(report->optimised->reason);
@@ -114,7 +121,7 @@ Status solve_frame(const FrameProblem& problem, const JobOptions& options, const
 Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting, FrameProblem problem,
                                                      PrinterReport* report, RunContext& context) {
   for (int round = 0;; ++round) {
-    auto solved = solve_frame(problem, setting.options, setting.skin, report, context);
+    auto solved = solve_frame(problem, setting, report, context);
     if (!solved) return solved.error();
     setting.laps.lap("optimize");
     fill_statistics(setting, report);

@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "worker/pipeline/earlier_frame.h"
 #include "worker/pipeline/laps.h"
 #include "worker/pipeline/pose_problem.h"
 #include "worker/pipeline/prepare_solid.h"
@@ -16,12 +17,19 @@ namespace skinframe {
 
 inline constexpr int kMaxBalanceRounds = 4;  // beyond the first
 
+// Where the optimiser starts instead of from nothing.
+struct ReducedStart {
+  const InitialFrame& earlier;
+  FrameProblem problem;  // this job's, posed on the earlier job's reduced frame
+};
+
 struct SolveSetting {
   const PreparedSolid& prepared;
   const Skin& skin;
   const JobOptions& options;
   BalanceState balance;
   Laps& laps;
+  std::optional<ReducedStart> start;
 };
 
 // Fills the report's optimised frame, statistics, termination and reason. No mesh when the job is infeasible.

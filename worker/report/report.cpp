@@ -199,6 +199,10 @@ json to_json(const PrinterReport& report) {
   out["files"] = report.files;
   if (report.thin) out["thin"] = thin_json(*report.thin);
   if (report.sampling) out["sampling"] = sampling_json(*report.sampling);
+  if (report.warm_start)
+    out["warm_start"] = {{"job_id", report.warm_start->job_id},
+                         {"reused", report.warm_start->reused},
+                         {"detail", report.warm_start->detail}};
   if (s.balance_margin_mm) out["balance_margin_mm"] = *s.balance_margin_mm;
   add_bounds(result, out);
   if (result.best_reachable_displacement_mm)

@@ -78,6 +78,14 @@ struct SamplingFacts {
   std::optional<double> stress_largest_mpa;  // of the solid, at a vertex of the map
 };
 
+// What of an earlier job served this printer's part.
+struct WarmStartReport {
+  std::string job_id;
+  std::vector<std::string>
+      reused;          // of "sampled frame", "reduced frame", "radii"; none: it ran as without it
+  std::string detail;  // why not all of them, where it is not all
+};
+
 // Everything that is known when one printer's part ends, by result or by a bound that cannot be kept.
 struct PrinterReport {
   std::string printer, material;
@@ -98,6 +106,7 @@ struct PrinterReport {
   std::optional<CompactFacts> compact;
   std::vector<std::string> files;  // in the printer's folder
   std::vector<std::string> warnings;
+  std::optional<WarmStartReport> warm_start;
   std::map<std::string, double> seconds;
 };
 nlohmann::json to_json(const PrinterReport& report);

@@ -50,6 +50,16 @@ TEST(ReadJob, AFrameProblemIsItsFileAndAName) {
   EXPECT_FALSE(parse_job(valid_job())->frame_problem);
 }
 
+TEST(ReadJob, AnEarlierJobAndItsFilesArrive) {
+  json document = valid_job();
+  document["warm_start"] = {{"job_id", "j0"}, {"files", {{"p-1", "/w/warm-start/0.json"}}}};
+  const auto job = parse_job(document);
+  ASSERT_TRUE(job.ok()) << job.error().message;
+  EXPECT_EQ(job->request.warm_start->job_id, "j0");
+  EXPECT_EQ(job->request.warm_start->files.at("p-1"), "/w/warm-start/0.json");
+  EXPECT_FALSE(parse_job(valid_job())->request.warm_start);
+}
+
 struct Spoiled {
   const char* what;
   json patch;
