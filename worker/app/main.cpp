@@ -9,13 +9,11 @@
 #include "worker/agent/agent.h"
 #include "worker/app/local_verbs.h"
 #include "worker/job/run_job.h"
-
-// OpenBLAS adds in an order that depends on its threads; one thread keeps results the same on every machine.
-extern "C" __attribute__((weak)) void openblas_set_num_threads(int);
+#include "worker/run/one_blas_thread.h"
 
 int main(int argc, char** argv) {
   using namespace skinframe;
-  if (openblas_set_num_threads != nullptr) openblas_set_num_threads(1);
+  use_one_blas_thread();
   spdlog::set_default_logger(spdlog::stderr_color_mt("worker"));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
 

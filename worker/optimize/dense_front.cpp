@@ -18,7 +18,6 @@ void dgemm_(const char* transa, const char* transb, const int* m, const int* n, 
 void dgemv_(const char* trans, const int* m, const int* n, const double* alpha, const double* a,
             const int* lda, const double* x, const int* incx, const double* beta, double* y, const int* incy);
 void dswap_(const int* n, double* x, const int* incx, double* y, const int* incy);
-void openblas_set_num_threads(int threads) __attribute__((weak));
 }
 
 namespace skinframe {
@@ -133,10 +132,6 @@ void solve_triangle(const FrontPanel& panel, FrontRange block, const char* trans
 }
 
 }  // namespace
-
-void use_one_blas_thread() {
-  if (openblas_set_num_threads) openblas_set_num_threads(1);
-}
 
 bool factorise_block(const FrontPanel& panel, FrontPivots& pivots, FrontRange block, Inertia& inertia) {
   pivots.swaps.resize(panel.pivots);

@@ -60,6 +60,4 @@ void solve_forward(const FrontPanel& panel, const FrontPivots& pivots, double* v
 // x <- P^T L^-T (x - D^-1 W^T y)
 void solve_backward(const FrontPanel& panel, const FrontPivots& pivots, double* v, int columns);
 
-void use_one_blas_thread();  // of the whole process; nothing where BLAS is not OpenBLAS
-
 }  // namespace skinframe

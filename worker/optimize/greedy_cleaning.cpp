@@ -12,6 +12,7 @@
 #include "worker/optimize/design.h"
 #include "worker/optimize/session.h"
 #include "worker/optimize/size_frame.h"
+#include "worker/run/one_blas_thread.h"
 
 namespace skinframe {
 namespace {

@@ -15,6 +15,7 @@
 #include "worker/optimize/size_frame.h"
 #include "worker/optimize/topology_stage.h"
 #include "worker/optimize/volume_lower_bound.h"
+#include "worker/run/one_blas_thread.h"
 
 namespace skinframe {
 namespace {

@@ -8,6 +8,7 @@
 #include "worker/pipeline/make_skin_frame.h"
 #include "worker/pipeline/prepare_solid.h"
 #include "worker/pipeline/write_json.h"
+#include "worker/run/one_blas_thread.h"
 
 namespace skinframe {
 namespace {
@@ -42,6 +43,7 @@ Result<PrinterReport> make_or_run_out(const PreparedSolid& prepared, const Print
 Result<std::vector<PrinterOutcome>> run_pipeline(const JobRequest& request,
                                                  const std::filesystem::path& out_dir,
                                                  const PipelineObserver& observer, const RunContext& shared) {
+  use_one_blas_thread();
   RunContext context = shared;
   context.report = [&](const Progress& progress) { observer.progress({"", progress, {}, {}}); };
   auto prepared = prepare_solid(request, context);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The block factorisation against Eigen on the dense matrix.
 #include "worker/optimize/block_ldlt.h"
+#include "worker/run/one_blas_thread.h"
 
 #include <gtest/gtest.h>
 
