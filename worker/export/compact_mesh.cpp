@@ -45,7 +45,7 @@ double furthest(const std::vector<Eigen::Vector3d>& probes, const TriangleTree& 
   return distance.empty() ? 0.0 : *std::max_element(distance.begin(), distance.end());
 }
 
-// Thinned, closed, without crossings of its own where that can be had.
+// Thinned, closed, without crossings of its own but where untangling leaves some: those are counted.
 void thin_part(TriangleMesh& part, std::size_t triangles, double tolerance, CompactMesh& compact,
                const RunContext& context) {
   if (part.triangles.size() <= triangles) return;
@@ -84,7 +84,7 @@ Result<CompactMesh> make_compact(const PrintableMesh& printable, std::size_t out
       if (!is_last) {
         compact.deviation_mm = std::max(furthest(probes_of(compact.mesh), full),
                                         furthest(full_probes, TriangleTree(compact.mesh)));
-        if (compact.deviation_mm > options.max_deviation_mm || compact.crossings_left > 0) {
+        if (compact.deviation_mm > options.max_deviation_mm) {
           tolerance *= 0.5;
           continue;
         }

@@ -7,11 +7,11 @@
 
 namespace skinframe {
 
-bool keep_wall(Eigen::Vector3d& vertex, const TriangleTree& body, double thickness_mm, double slack_mm) {
+bool keep_wall(Eigen::Vector3d& vertex, const TriangleTree& body, double least_mm, double to_mm) {
   const Eigen::Vector3d foot = body.nearest(vertex);
   const double depth = (vertex - foot).norm();
-  if (depth >= thickness_mm - slack_mm || depth == 0) return false;
-  const Eigen::Vector3d there = foot + (vertex - foot) * (thickness_mm / depth);
+  if (depth >= least_mm || depth == 0) return false;
+  const Eigen::Vector3d there = foot + (vertex - foot) * (to_mm / depth);
   vertex = there.cast<float>().cast<double>();
   return true;
 }
@@ -23,7 +23,8 @@ int keep_wall(TriangleMesh& cavity, const TriangleTree& body, const Skin& skin, 
       // The field is never too shallow by more than its voxel: what it sees deeper is a strut's, not the
       // wall's.
       if (-skin.field.at(cavity.vertices[i]) > skin.thickness_mm + voxel_mm) continue;
-      moved += keep_wall(cavity.vertices[i], body, skin.thickness_mm, kWallSlackInVoxels * voxel_mm);
+      moved += keep_wall(cavity.vertices[i], body, skin.thickness_mm - kWallSlackInVoxels * voxel_mm,
+                         skin.thickness_mm);
     }
   });
   return moved;

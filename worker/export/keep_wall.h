@@ -16,7 +16,7 @@ namespace skinframe {
 inline constexpr double kWallSlackInVoxels = 0.1;
 int keep_wall(TriangleMesh& cavity, const TriangleTree& body, const Skin& skin, double voxel_mm);
 
-// The same for one vertex; true when it moved.
-bool keep_wall(Eigen::Vector3d& vertex_mm, const TriangleTree& body, double thickness_mm, double slack_mm);
+// One vertex: where it is nearer to M than least_mm it goes to the distance to_mm. True when it moved.
+bool keep_wall(Eigen::Vector3d& vertex_mm, const TriangleTree& body, double least_mm, double to_mm);
 
 }  // namespace skinframe

@@ -144,9 +144,12 @@ Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Fr
   manifold = manifold && mend_edges(cavity).manifold;  // places rounded to float may fall together
   if (context.cancelled()) return cancelled_error();
   steps.done("keep_wall");
-  // What is taken apart keeps the wall too, with twice the slack so that there is room to move.
-  const auto hold = [&](Eigen::Vector3d& vertex) {
-    keep_wall(vertex, body, skin.thickness_mm, 2.0 * kWallSlackInVoxels * *voxel);
+  // What is taken apart keeps the wall too. Where the cavity is a sliver its sides have no room to part, so
+  // the wall gives way there round by round, to less than half a voxel.
+  const auto hold = [&](Eigen::Vector3d& vertex, int round) {
+    const double slack = kWallSlackInVoxels * (2.0 + 2.0 * round / kMostUntanglingRounds);
+    const double least = skin.thickness_mm - slack * *voxel;
+    keep_wall(vertex, body, least, least);
   };
   result.crossings_left = untangle(cavity, context, hold).crossings_left;
   if (context.cancelled()) return cancelled_error();

@@ -12,7 +12,6 @@
 namespace skinframe {
 namespace {
 
-constexpr int kMostRounds = 12;
 constexpr int kRoundsARing = 2;  // after as many the next ring of neighbours moves too
 constexpr double kCellMm = 2.0;  // of the grid that finds who is near
 
@@ -34,7 +33,7 @@ void add_ring(const TriangleMesh& mesh, std::vector<char>& marked) {
   }
 }
 
-void relax(TriangleMesh& mesh, const std::vector<char>& marked, const Hold& hold) {
+void relax(TriangleMesh& mesh, const std::vector<char>& marked, const Hold& hold, int round) {
   std::map<int, std::pair<Eigen::Vector3d, int>> sums;  // in order of the vertices
   for (const auto& t : mesh.triangles) {
     for (int k = 0; k < 3; ++k) {
@@ -47,7 +46,7 @@ void relax(TriangleMesh& mesh, const std::vector<char>& marked, const Hold& hold
   for (const auto& [v, mean] : sums) {
     const Eigen::Vector3d to = 0.5 * (mesh.vertices[v] + mean.first / mean.second);
     mesh.vertices[v] = to.cast<float>().cast<double>();
-    hold(mesh.vertices[v]);
+    hold(mesh.vertices[v], round);
   }
 }
 
@@ -93,10 +92,10 @@ Untangling untangle(TriangleMesh& mesh, const RunContext& context, const Hold& h
   Untangling result;
   Pairs pairs = crossing_triangles(mesh);
   result.crossings_found = static_cast<int>(pairs.size());
-  for (int round = 0; round < kMostRounds && !pairs.empty() && !context.cancelled(); ++round) {
+  for (int round = 0; round < kMostUntanglingRounds && !pairs.empty() && !context.cancelled(); ++round) {
     std::vector<char> marked = corners_of(mesh, pairs);
     for (int ring = 0; ring < round / kRoundsARing; ++ring) add_ring(mesh, marked);
-    relax(mesh, marked, hold);
+    relax(mesh, marked, hold, round);
     pairs = crossing_triangles(mesh, triangles_near(mesh, marked));
   }
   result.crossings_left = static_cast<int>(pairs.size());

@@ -18,9 +18,11 @@ struct Untangling {
   int crossings_left = 0;   // 0 but where the rounds did not do
 };
 
-// hold: called on each new place of a corner, may move it to where it is allowed to be, in exact floats.
-using Hold = std::function<void(Eigen::Vector3d&)>;
+// hold: called on each new place of a corner with the number of the round, may move it to where it is allowed
+// to be, in exact floats.
+inline constexpr int kMostUntanglingRounds = 12;
+using Hold = std::function<void(Eigen::Vector3d&, int round)>;
 Untangling untangle(
-    TriangleMesh& mesh, const RunContext& context, const Hold& hold = [](Eigen::Vector3d&) {});
+    TriangleMesh& mesh, const RunContext& context, const Hold& hold = [](Eigen::Vector3d&, int) {});
 
 }  // namespace skinframe

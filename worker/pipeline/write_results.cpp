@@ -26,7 +26,8 @@ Status write_compact(const PrintableMesh& printable, const PreparedSolid& prepar
   auto compact = make_compact(printable, prepared.solid.mesh().triangles.size(), options, context);
   if (!compact) return compact.error();
   if (auto written = write_stl(compact->mesh, folder / "skin-frame-compact.stl"); !written) return written;
-  report->compact = {compact->mesh.triangles.size(), compact->volume_mm3, compact->deviation_mm};
+  report->compact = {compact->mesh.triangles.size(), compact->volume_mm3, compact->deviation_mm,
+                     compact->crossings_left};
   report->files.push_back("skin-frame-compact.stl");
   return ok_status();
 }

@@ -214,7 +214,8 @@ json to_json(const PrinterReport& report) {
     if (report.compact)
       out["compact"] = {{"triangles", report.compact->triangles},
                         {"volume_mm3", report.compact->volume_mm3},
-                        {"deviation_mm", report.compact->deviation_mm}};
+                        {"deviation_mm", report.compact->deviation_mm},
+                        {"crossings", report.compact->crossings}};
     out["printed_volume_mm3"] = s.printed_volume_mm3;
     out["printed_ratio"] = s.printed_ratio;
     out["weight_g"] = s.weight_g;

@@ -62,6 +62,7 @@ nlohmann::json to_json(const Statistics& statistics);
 struct CompactFacts {
   std::size_t triangles = 0;
   double volume_mm3 = 0, deviation_mm = 0;  // deviation from skin-frame.stl
+  int crossings = 0;                        // pairs of its triangles that cut each other
 };
 
 // How the frame's nodes were placed, as measured on the initial frame: the "sampling" object.

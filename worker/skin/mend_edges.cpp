@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/skin/mend_edges.h"
 
+#include <tbb/parallel_sort.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -33,7 +35,7 @@ std::vector<Side> sorted_sides(const TriangleMesh& mesh) {
       sides.push_back({(std::uint64_t{std::min(a, b)} << 32) | std::max(a, b), t, a < b});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
+  tbb::parallel_sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
     return x.key != y.key ? x.key < y.key : x.triangle < y.triangle;
   });
   return sides;
@@ -64,7 +66,7 @@ void weld_equal_floats(TriangleMesh& mesh) {
     if (a.z() != b.z()) return a.z() < b.z();
     return i < j;
   };
-  std::sort(order.begin(), order.end(), less);
+  tbb::parallel_sort(order.begin(), order.end(), less);
   std::vector<int> keeper(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
     const bool same = i > 0 && mesh.vertices[order[i]] == mesh.vertices[order[i - 1]];
@@ -97,7 +99,7 @@ void cancel_opposite_triangles(TriangleMesh& mesh) {
     const auto& t = mesh.triangles[i];
     return (t[0] < t[1]) + (t[1] < t[2]) + (t[2] < t[0]) == 2;
   };
-  std::sort(order.begin(), order.end(), [&](int i, int j) {
+  tbb::parallel_sort(order.begin(), order.end(), [&](int i, int j) {
     const auto a = sorted(i), b = sorted(j);
     return a != b ? a < b : i < j;
   });
