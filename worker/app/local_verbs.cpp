@@ -35,6 +35,7 @@ LocalVerbs::LocalVerbs(CLI::App& app) {
   solve_frame_->add_option("PROBLEM", problem_, "Problem file (JSON)")->required();
   solve_frame_->add_option("--out", out_, "Result file (JSON)")->required();
   solve_frame_->add_flag("--json", json_, "Summary as JSON");
+  solve_frame_->add_flag("--verbose", verbose_, "A line for each iteration of the interior point");
 }
 
 std::optional<int> LocalVerbs::run() {
@@ -79,6 +80,6 @@ int LocalVerbs::run_check() const {
   return kOk;
 }
 
-int LocalVerbs::run_solve_frame() const { return solve_frame_main(problem_, out_, json_); }
+int LocalVerbs::run_solve_frame() const { return solve_frame_main(problem_, out_, {json_, verbose_}); }
 
 }  // namespace skinframe

@@ -26,6 +26,7 @@ class LocalVerbs {
   CLI::App* solve_frame_ = nullptr;
   bool list_samples_ = false;
   bool json_ = false;
+  bool verbose_ = false;
   std::string sample_name_, directory_, problem_, out_;
 };
 

@@ -17,6 +17,7 @@ struct BaselineFrame {
   std::vector<int> node_origin, strut_origin;  // in the input
   int rounds = 0;                              // of removal, or linear solves of a search
   int interior_point_iterations = 0;
+  int factorisations = 0;  // of the interior point's system
 
   double volume_mm3() const { return evaluation.frame_volume_mm3; }
 };

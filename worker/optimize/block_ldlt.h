@@ -4,7 +4,8 @@
 // and multipliers of a node, coupled as [0 K; K 0], pivot with one another. No pivot is delayed to a later
 // front: the caller refines iteratively and regularises where the inertia is wrong.
 //
-// Guarantee: the same bits at any number of threads, when BLAS runs on one: use_one_blas_thread() (worker/run).
+// Guarantee: the same bits at any number of threads, when BLAS runs on one: use_one_blas_thread()
+// (worker/run).
 #pragma once
 
 #include <Eigen/Core>

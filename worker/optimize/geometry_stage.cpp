@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/optimize/geometry_stage.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <numbers>
@@ -13,6 +14,7 @@
 namespace skinframe {
 namespace {
 
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double kNearBarrier = 1e-2;
@@ -27,6 +29,9 @@ constexpr double kLeastLengthShare = 0.98;
 constexpr double kDefaultLengthShare = 0.5;
 // A load case that took no part joins when the moved frame exceeds its limits by this, relative.
 constexpr double kCaseExcess = 1e-3;
+// Squares of sines: below, struts are in line; and by how much a strut must be more across than the one
+// before, so that rounding does not choose between two that are alike.
+constexpr double kInLine = 1e-6, kClearlyMore = 1e-6;
 // Sets of contractions tried after one pass.
 constexpr int kMostContractions = 6;
 
@@ -42,13 +47,43 @@ std::vector<double> distance_to_nearest(const Frame& frame, const std::vector<bo
   return distance;
 }
 
-// The regions of the nodes that move in this pass: the caller's half-spaces, or the box of the move limit.
+// Three axes of each node from its own struts, so that the box of the move limit turns with the frame: the
+// first strut's direction, the part across it of the strut that is most across, and their cross product. Any
+// axes serve a node whose struts are all in line.
+std::vector<Matrix3d> strut_axes(const Frame& frame) {
+  std::vector<Vector3d> along(frame.nodes_mm.size(), Vector3d::Zero()), across = along;
+  const auto at_each_end = [&](auto act) {
+    for (const Strut& strut : frame.struts) {
+      const Vector3d e = (frame.nodes_mm[strut.b] - frame.nodes_mm[strut.a]).normalized();
+      act(strut.a, e);
+      act(strut.b, Vector3d(-e));
+    }
+  };
+  at_each_end([&](int node, const Vector3d& e) {
+    if (along[node].isZero()) along[node] = e;
+  });
+  at_each_end([&](int node, const Vector3d& e) {
+    const Vector3d part = e - e.dot(along[node]) * along[node];
+    if (part.squaredNorm() > (1 + kClearlyMore) * across[node].squaredNorm()) across[node] = part;
+  });
+  std::vector<Matrix3d> axes(along.size(), Matrix3d::Identity());
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    if (across[i].squaredNorm() < kInLine) continue;
+    axes[i].col(0) = along[i];
+    axes[i].col(1) = across[i].normalized();
+    axes[i].col(2) = axes[i].col(0).cross(axes[i].col(1));
+  }
+  return axes;
+}
+
+// The regions of the nodes that move in this pass: the caller's half-spaces, and the box of the move limit.
 NodeRegions regions_of(const Design& design, const OptimizeOptions& options) {
   const FrameProblem& problem = design.problem;
   const Frame& frame = problem.frame;
   NodeRegions given;
   if (options.convex_regions) given = options.convex_regions(frame, radii_of(design.areas_mm2));
   const std::vector<double> nearest = distance_to_nearest(frame, problem.free_nodes);
+  const std::vector<Matrix3d> axes = strut_axes(frame);
   NodeRegions regions(frame.nodes_mm.size());
   bool any = false;
   for (std::size_t i = 0; i < regions.size(); ++i) {
@@ -63,8 +98,10 @@ NodeRegions regions_of(const Design& design, const OptimizeOptions& options) {
     });
     if (!inside) continue;
     for (int axis = 0; axis < 3; ++axis)
-      for (double sign : {-1.0, 1.0})
-        region.push_back({sign * Vector3d::Unit(axis), sign * at[axis] + half_width});
+      for (double sign : {-1.0, 1.0}) {
+        const Vector3d normal = sign * axes[i].col(axis);
+        region.push_back({normal, normal.dot(at) + half_width});
+      }
     regions[i] = std::move(region);
     any = true;
   }

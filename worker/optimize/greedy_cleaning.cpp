@@ -77,7 +77,8 @@ Result<BaselineFrame> clean(const FrameProblem& problem, const GreedyOptions& op
   frame.problem = std::move(design.problem);
   frame.node_origin = std::move(design.node_origin);
   frame.strut_origin = std::move(design.strut_origin);
-  frame.interior_point_iterations = session.interior_point_iterations();
+  frame.interior_point_iterations = session.effort().iterations;
+  frame.factorisations = session.effort().factorisations;
   return frame;
 }
 

@@ -89,6 +89,7 @@ class InteriorPoint {
     regularisation_ = inertia_.first();
     for (factorisations_ = 1;; ++factorisations_) {
       kkt_.assemble(iterate_, regularisation_);
+      ++all_factorisations_;
       if (kkt_.factorise()) break;
       if (options_.cancelled()) return false;
       const auto stronger = inertia_.next();
@@ -145,7 +146,8 @@ class InteriorPoint {
   }
 
   InteriorPointResult result(InteriorPointEnd end, int iterations) const {
-    return {end, iterate_.point, iterate_.duals, kkt_error(program_, layout_, iterate_, 0), iterations};
+    return {end,        iterate_.point,     iterate_.duals, kkt_error(program_, layout_, iterate_, 0),
+            iterations, all_factorisations_};
   }
 
   const FrameProgram& program_;
@@ -162,6 +164,7 @@ class InteriorPoint {
   int best_at_ = 0;
   int restorations_ = 0;
   int factorisations_ = 0;  // of the last step
+  int all_factorisations_ = 0;
   struct Taken {
     double primal_length = 0, dual_length = 0;
     int halvings = 0;

@@ -38,6 +38,7 @@ struct InteriorPointResult {
   Eigen::VectorXd duals;  // of its inequalities
   KktError error;
   int iterations = 0;
+  int factorisations = 0;
 };
 
 // Bounds with lower < upper must leave room: the start is pushed inside them.

@@ -189,7 +189,9 @@ class Algorithm {
     for (const CaseResponse& response : responses)
       result_.displacements_mm.push_back(response.displacements_mm);
     conclude();
-    result_.interior_point_iterations = session_.interior_point_iterations();
+    result_.interior_point_iterations = session_.effort().iterations;
+    result_.factorisations = session_.effort().factorisations;
+    result_.interior_point_seconds = session_.effort().seconds;
     result_.node_origin = std::move(design_.node_origin);
     result_.strut_origin = std::move(design_.strut_origin);
     result_.problem = std::move(design_.problem);

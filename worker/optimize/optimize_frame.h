@@ -39,8 +39,8 @@ struct OptimizeOptions {
   bool geometry = true;
 
   // The regions of the free nodes about the present frame, asked for before each geometry pass. Empty: a box
-  // around each free node of half width region_share times the distance to its nearest neighbour. A box of
-  // that width bounds a pass in any case.
+  // around each free node of half width region_share times the distance to its nearest neighbour, along
+  // its struts. A box of that width bounds a pass in any case.
   std::function<NodeRegions(const Frame&, const std::vector<double>& radii_mm)> convex_regions;
   // Geometry's veto on a moved and re-sized frame. False: the pass's move is halved up to max_move_halvings
   // times, then the pass is dropped. Topology drops a removal that turns an accepted frame into one that is
@@ -122,7 +122,9 @@ struct OptimizeResult {
   // did not run repeats the one before.
   StageRecord initial, size, topology, geometry;
   int outer_iterations = 0;           // of Algorithm 1
-  int interior_point_iterations = 0;  // over all programs
+  int interior_point_iterations = 0;  // over all programs, as are the next two
+  int factorisations = 0;             // of the interior point's system
+  double interior_point_seconds = 0;  // contained in `seconds`
   double kkt_residual = 0;            // of the last sizing: scaled, nondimensional
   // No frame of the input's nodes and struts, each radius within its bounds and slenderness, keeps the limits
   // with less volume (volume_lower_bound.h); gap = size volume / bound - 1. Absent: infeasible or not asked
@@ -138,7 +140,7 @@ struct OptimizeResult {
   std::optional<double> best_reachable_displacement_mm;  // when that is violated_constraint
   std::string
       violated_constraint;  // when infeasible: displacement, axial stress, shear stress, balance, equilibrium
-  std::map<std::string, double> seconds;  // "size", "topology", "geometry"
+  std::map<std::string, double> seconds;  // "size", "topology", "geometry", "bound"
   // Index in the input frame, one a node of problem.frame; a node that took others in keeps its own.
   std::vector<int> node_origin;
   std::vector<int> strut_origin;  // the same for struts; of struts that became one, of the one that stayed

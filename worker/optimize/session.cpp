@@ -2,6 +2,7 @@
 #include "worker/optimize/session.h"
 
 #include <algorithm>
+#include <chrono>
 
 namespace skinframe {
 namespace {
@@ -51,8 +52,11 @@ ProgramOutcome Session::solve(const FrameProblem& problem, ProgramRequest reques
   options.start_duals = scaled.start_duals();
   options.restore_equilibrium = [&](ProgramVector& point) { scaled.restore_equilibrium(point); };
 
+  const auto began = std::chrono::steady_clock::now();
   const InteriorPointResult result = solve_program(scaled.program(), scaled.start(), options);
-  iterations_ += result.iterations;
+  effort_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  effort_.iterations += result.iterations;
+  effort_.factorisations += result.factorisations;
   ProgramOutcome outcome{
       result.end,           scaled.areas_mm2(result.point), scaled.positions_mm(result.point),
       result.point.elastic, result.error.worst(),           {}};

@@ -13,6 +13,13 @@
 
 namespace skinframe {
 
+// What the programs of a session cost together.
+struct SolverEffort {
+  int iterations = 0;
+  int factorisations = 0;
+  double seconds = 0;  // within the interior point
+};
+
 struct ProgramOutcome {
   InteriorPointEnd end = InteriorPointEnd::kStuck;
   std::vector<double> areas_mm2;
@@ -31,7 +38,7 @@ class Session {
 
   const OptimizeOptions& options() const { return options_; }
   bool cancelled() const { return context_.cancelled(); }
-  int interior_point_iterations() const { return iterations_; }
+  const SolverEffort& effort() const { return effort_; }
   void enter(Stage stage) { stage_ = stage, stage_iteration_ = 0; }
 
   // The duals that programs of least volume start from, as long as the count of nodes fits; empty: none.
@@ -53,7 +60,7 @@ class Session {
   std::shared_ptr<ThreadTeam> team_;
   Stage stage_ = Stage::kSize;
   int stage_iteration_ = 0;
-  int iterations_ = 0;
+  SolverEffort effort_;
   WarmStart offered_, latest_;
   std::optional<double> most_mm3_;
 };

@@ -58,6 +58,8 @@ double expected_volume_mm3(const InitialFrame& earlier, const FrameProblem& prob
 
 void add_effort(const OptimizeResult& of, OptimizeResult* to) {
   to->interior_point_iterations += of.interior_point_iterations;
+  to->factorisations += of.factorisations;
+  to->interior_point_seconds += of.interior_point_seconds;
   for (const auto& [stage, seconds] : of.seconds) to->seconds[stage] += seconds;
 }
 

@@ -85,7 +85,8 @@ json result_json(const OptimizeResult& result, const FrameProblem& given) {
   }
   add_bounds(result, given, document);
   document["iterations"] = {{"outer", result.outer_iterations},
-                            {"interior_point", result.interior_point_iterations}};
+                            {"interior_point", result.interior_point_iterations},
+                            {"factorisations", result.factorisations}};
   document["kkt_residual"] = result.kkt_residual;
   document["evaluation"] = evaluation_json(result.evaluation);
   document["seconds"] = result.seconds;

@@ -62,22 +62,24 @@ Status can_be_written(const std::filesystem::path& out) {
       fmt::format("{}: there is no such folder to write {} in", folder.string(), out.filename().string()));
 }
 
-int solve(const std::filesystem::path& problem, const std::filesystem::path& out, bool json_summary,
-          RunContext& context) {
+int solve(const std::filesystem::path& problem, const std::filesystem::path& out,
+          const SolveFrameOptions& options, RunContext& context) {
   if (const Status place = can_be_written(out); !place) {
     std::cerr << "skinframe: " << place.error().message << '\n';
     return kInternal;
   }
   const auto file = read_problem(problem, problem.string());
   if (!file) return fail(file.error());
-  const auto result = optimize_frame(file->problem, file->options, context);
+  OptimizeOptions chosen = file->options;
+  if (options.verbose) chosen.log = [](const std::string& line) { std::cerr << line << '\n'; };
+  const auto result = optimize_frame(file->problem, chosen, context);
   if (!result) return fail(result.error());
   const nlohmann::json document = result_json(*result, file->problem);
   if (const Status written = write_result(document, out); !written) {
     std::cerr << "skinframe: " << written.error().message << '\n';
     return kInternal;
   }
-  std::cout << (json_summary ? result_summary(document).dump() + "\n" : summary_text(*result));
+  std::cout << (options.json_summary ? result_summary(document).dump() + "\n" : summary_text(*result));
   return result->reason == Termination::kInfeasible ? kInfeasible : kSolved;
 }
 
@@ -105,9 +107,9 @@ class ProgressLines {
 }  // namespace
 
 int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out,
-                     bool json_summary, RunContext& context) {
+                     const SolveFrameOptions& options, RunContext& context) {
   try {
-    return solve(problem, out, json_summary, context);
+    return solve(problem, out, options, context);
   } catch (const std::bad_alloc&) {
     std::cerr << "skinframe: " << problem.string()
               << ": needs more memory than there is; use a smaller frame\n";
@@ -116,13 +118,13 @@ int solve_frame_main(const std::filesystem::path& problem, const std::filesystem
 }
 
 int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out,
-                     bool json_summary) {
+                     const SolveFrameOptions& options) {
   const StopOnSignal stop;
   ProgressLines lines;
   RunContext context;
   context.stop = stop.token();
-  context.report = [&](const Progress& tick) { lines.show(tick); };
-  return solve_frame_main(problem, out, json_summary, context);
+  if (!options.verbose) context.report = [&](const Progress& tick) { lines.show(tick); };
+  return solve_frame_main(problem, out, options, context);
 }
 
 }  // namespace skinframe

@@ -10,11 +10,15 @@ namespace skinframe {
 
 // The exit code: 0 solved, 3 bad problem file, 4 infeasible (the result is written all the same), 5 internal,
 // out of memory or not writable, 6 cancelled. Errors go to stderr; stdout gets a summary, as one line of JSON
-// (result_summary.h) when json_summary.
+// (result_summary.h) when json_summary. verbose: a line on stderr for each iteration of the interior point.
+struct SolveFrameOptions {
+  bool json_summary = false;
+  bool verbose = false;
+};
 int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out,
-                     bool json_summary, RunContext& context);
+                     const SolveFrameOptions& options, RunContext& context);
 // The same with progress on stderr, stopped by SIGINT and SIGTERM: before any other thread of ours starts.
 int solve_frame_main(const std::filesystem::path& problem, const std::filesystem::path& out,
-                     bool json_summary);
+                     const SolveFrameOptions& options);
 
 }  // namespace skinframe

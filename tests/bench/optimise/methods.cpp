@@ -55,6 +55,8 @@ Result<Row> run_optimiser(const FrameProblem& problem, const OptimizeOptions& op
   row.status = to_string(result->reason);
   take_evaluation(result->evaluation, row);
   row.iterations = result->interior_point_iterations;
+  row.factorisations = result->factorisations;
+  row.solve_seconds = result->interior_point_seconds;
   row.lower_bound_mm3 = result->lower_bound_mm3;
   row.relaxed_gap = result->relaxed_gap;
   row.size_volume_mm3 = result->size.volume_mm3;
@@ -84,6 +86,7 @@ Result<Row> run_baseline(const Clock& clock, const Result<BaselineFrame>& frame)
   row.status = frame->feasible ? "feasible" : "infeasible";
   take_evaluation(frame->evaluation, row);
   row.iterations = frame->interior_point_iterations > 0 ? frame->interior_point_iterations : frame->rounds;
+  if (frame->factorisations > 0) row.factorisations = frame->factorisations;
   row.struts_left = static_cast<int>(frame->problem.frame.struts.size());
   return row;
 }

@@ -37,6 +37,7 @@ json to_json(const Row& row) {
           {"status", row.status},
           {"seconds", value_or_null(row.seconds)},
           {"cpu_seconds", value_or_null(row.cpu_seconds)},
+          {"solve_seconds", value_or_null(row.solve_seconds)},
           {"iterations", value_or_null(row.iterations)},
           {"factorisations", value_or_null(row.factorisations)},
           {"volume_mm3", value_or_null(row.volume_mm3)},
@@ -62,6 +63,7 @@ Row row_from_json(const json& from) {
   row.status = from.value("status", "");
   read(from, "seconds", row.seconds);
   read(from, "cpu_seconds", row.cpu_seconds);
+  read(from, "solve_seconds", row.solve_seconds);
   read(from, "iterations", row.iterations);
   read(from, "factorisations", row.factorisations);
   read(from, "volume_mm3", row.volume_mm3);

@@ -19,10 +19,11 @@ struct Row {
   std::string frame, load, method;
   int nodes = 0, struts = 0;  // of the problem
   double force_n = 0;
-  std::string status;                 // how it ended; "optimal", "feasible", ... or what went wrong
-  std::optional<double> seconds;      // wall clock, without reading the problem
-  std::optional<double> cpu_seconds;  // the same of all threads
-  std::optional<int> iterations;      // of the interior point; of MMA's model; solves of the uniform search
+  std::string status;             // how it ended; "optimal", "feasible", ... or what went wrong
+  std::optional<double> seconds;  // wall clock of the whole method: its start, and what it proves, included
+  std::optional<double> cpu_seconds;    // the same of all threads
+  std::optional<double> solve_seconds;  // of it, wall clock within the interior point: Ipopt's, or ours
+  std::optional<int> iterations;        // of the interior point; of MMA's model; solves of the uniform search
   std::optional<int> factorisations;
   std::optional<double> volume_mm3;       // of the frame handed over
   std::optional<double> lower_bound_mm3;  // of SizeOpt

@@ -25,7 +25,7 @@ class SolveFrame : public ::testing::Test {
   int solve(const json& document) {
     std::ofstream(problem_) << document.dump();
     RunContext context;
-    return solve_frame_main(problem_, out_, true, context);
+    return solve_frame_main(problem_, out_, {.json_summary = true}, context);
   }
   json result() const { return json::parse(std::ifstream(out_)); }
 };
@@ -74,7 +74,7 @@ TEST_F(SolveFrame, CancelledIsExitCode6) {
   source.request_stop();
   RunContext context;
   context.stop = source.get_token();
-  EXPECT_EQ(solve_frame_main(problem_, out_, true, context), 6);
+  EXPECT_EQ(solve_frame_main(problem_, out_, {.json_summary = true}, context), 6);
 }
 
 }  // namespace
