@@ -7,10 +7,10 @@
 #include <random>
 #include <utility>
 
-#include "server/store/job_queries.h"
 #include "server/store/postgres_migrations.h"
 #include "server/store/postgres_news.h"
 #include "server/store/postgres_pool.h"
+#include "server/store/sql_reads.h"
 
 namespace skinframe::server {
 namespace {
@@ -24,7 +24,7 @@ std::string sender_name() {
   return fmt::format("{:08x}{:08x}", random(), random());
 }
 
-class PostgresStore final : public JobStore {
+class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
  public:
   PostgresStore(const PostgresOptions& options, CommitListener* listener)
       : pool_(options.where, options.most_sessions), listener_(listener), own_(sender_name()) {
@@ -95,49 +95,9 @@ class PostgresStore final : public JobStore {
     return status;
   }
 
-  absl::StatusOr<JobRecord> get(const std::string& job_id) override {
-    return pool_.with([&](PostgresSession& session) -> absl::StatusOr<JobRecord> {
-      auto row = find_job(session, job_id);
-      if (!row.ok()) return row.status();
-      return std::move(row->record);
-    });
-  }
-
-  absl::StatusOr<ListPage> list(const ListQuery& query) override {
-    return pool_.with([&](PostgresSession& session) { return list_jobs(session, query); });
-  }
-
-  absl::StatusOr<std::vector<v1::JobEvent>> events(const std::string& job_id, std::int64_t after_sequence,
-                                                   int limit) override {
-    return pool_.with(
-        [&](PostgresSession& session) { return read_events(session, job_id, after_sequence, limit); });
-  }
-
-  absl::StatusOr<std::int64_t> queued_before(const std::string& job_id) override {
-    return pool_.with([&](PostgresSession& session) { return count_queued_before(session, job_id); });
-  }
-
-  absl::StatusOr<std::vector<std::string>> expired_leases(Time now, int limit) override {
-    return pool_.with(
-        [&](PostgresSession& session) { return overdue_jobs(session, kExpiredLeases, now, limit); });
-  }
-
-  absl::StatusOr<std::vector<std::string>> passed_deadlines(Time now, int limit) override {
-    return pool_.with(
-        [&](PostgresSession& session) { return overdue_jobs(session, kPassedDeadlines, now, limit); });
-  }
-
-  absl::StatusOr<std::vector<std::string>> ended_jobs(Time until, int limit) override {
-    return pool_.with(
-        [&](PostgresSession& session) { return overdue_jobs(session, kEndedJobs, until, limit); });
-  }
-
-  absl::StatusOr<std::map<std::string, std::int64_t>> last_sequences(
-      const std::vector<std::string>& job_ids) override {
-    return pool_.with([&](PostgresSession& session) { return read_last_sequences(session, job_ids); });
-  }
-
  private:
+  PostgresPool& source() override { return pool_; }
+
   void committed(const JobRecord& record, bool state_changed) {
     if (listener_ != nullptr) listener_->committed(record, state_changed);
   }

@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "server/store/job_queries.h"
+#include "server/store/sql_reads.h"
 #include "server/store/sqlite_migrations.h"
 #include "server/store/sqlite_readers.h"
 #include "server/store/sqlite_writer.h"
@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t kLargestGroup = 256;
 
-class SqliteStore final : public JobStore {
+class SqliteStore final : public SqlReads<SqliteDatabase, SqliteReaders> {
  public:
   SqliteStore(std::unique_ptr<SqliteDatabase> database, const std::filesystem::path& file,
               CommitListener* listener)
@@ -95,46 +95,9 @@ class SqliteStore final : public JobStore {
     return writer_.write(work, tell);
   }
 
-  absl::StatusOr<JobRecord> get(const std::string& job_id) override {
-    return readers_.with([&](SqliteDatabase& database) -> absl::StatusOr<JobRecord> {
-      auto row = find_job(database, job_id);
-      if (!row.ok()) return row.status();
-      return std::move(row->record);
-    });
-  }
-
-  absl::StatusOr<ListPage> list(const ListQuery& query) override {
-    return readers_.with([&](SqliteDatabase& database) { return list_jobs(database, query); });
-  }
-
-  absl::StatusOr<std::vector<v1::JobEvent>> events(const std::string& job_id, std::int64_t after_sequence,
-                                                   int limit) override {
-    return readers_.with(
-        [&](SqliteDatabase& database) { return read_events(database, job_id, after_sequence, limit); });
-  }
-
-  absl::StatusOr<std::int64_t> queued_before(const std::string& job_id) override {
-    return readers_.with([&](SqliteDatabase& database) { return count_queued_before(database, job_id); });
-  }
-
-  absl::StatusOr<std::vector<std::string>> expired_leases(Time now, int limit) override {
-    return overdue(kExpiredLeases, now, limit);
-  }
-
-  absl::StatusOr<std::vector<std::string>> passed_deadlines(Time now, int limit) override {
-    return overdue(kPassedDeadlines, now, limit);
-  }
-
-  absl::StatusOr<std::vector<std::string>> ended_jobs(Time until, int limit) override {
-    return overdue(kEndedJobs, until, limit);
-  }
-
-  absl::StatusOr<std::map<std::string, std::int64_t>> last_sequences(
-      const std::vector<std::string>& job_ids) override {
-    return readers_.with([&](SqliteDatabase& database) { return read_last_sequences(database, job_ids); });
-  }
-
  private:
+  SqliteReaders& source() override { return readers_; }
+
   void committed(const JobRecord& record, bool state_changed) {
     if (listener_ != nullptr) listener_->committed(record, state_changed);
   }
@@ -142,10 +105,6 @@ class SqliteStore final : public JobStore {
   static absl::Status no_token(const absl::Status& status) {
     return status.ok() ? absl::InternalError("store: the fencing counter is gone: the file is damaged")
                        : status;
-  }
-
-  absl::StatusOr<std::vector<std::string>> overdue(const char* sql, Time now, int limit) {
-    return readers_.with([&](SqliteDatabase& database) { return overdue_jobs(database, sql, now, limit); });
   }
 
   SqliteWriter writer_;

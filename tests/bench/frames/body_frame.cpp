@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "tests/fixture/temporary_folder.h"
 #include "worker/mesh/write_stl.h"
 #include "worker/pipeline/pose_problem.h"
 #include "worker/sample/make_sample.h"
@@ -56,13 +57,10 @@ Result<PreparedBody> prepare_sample(const std::string& name) {
   RunContext context;
   auto mesh = make_sample(name, context);
   if (!mesh) return mesh.error();
-  std::string folder = (std::filesystem::temp_directory_path() / "skinframe-bench-XXXXXX").string();
-  if (mkdtemp(folder.data()) == nullptr) return io_error("no temporary folder: " + folder);
-  const auto path = std::filesystem::path(folder) / (name + ".stl");
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / (name + ".stl");
   const Status written = write_stl(*mesh, path);
-  auto body = written ? prepare_mesh_file(path) : Result<PreparedBody>(written.error());
-  std::filesystem::remove_all(folder);
-  return body;
+  return written ? prepare_mesh_file(path) : Result<PreparedBody>(written.error());
 }
 
 Result<SampledFrame> sample_body(const PreparedBody& body, const std::optional<BodySize>& size) {

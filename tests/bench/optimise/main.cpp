@@ -15,6 +15,7 @@
 #include "tests/bench/optimise/child.h"
 #include "tests/bench/optimise/methods.h"
 #include "tests/bench/optimise/table.h"
+#include "tests/fixture/temporary_folder.h"
 #include "worker/problem/problem_file.h"
 
 namespace skinframe::bench {
@@ -52,25 +53,6 @@ int run_row(const std::string& method, const std::string& file, const MethodLimi
   std::cout << to_json(*row).dump() << '\n';
   return kOk;
 }
-
-class Scratch {
- public:
-  Scratch() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "skinframe-bench-XXXXXX").string();
-    SKINFRAME_CHECK(mkdtemp(pattern.data()) != nullptr);
-    path_ = pattern;
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  Scratch(const Scratch&) = delete;
-  Scratch& operator=(const Scratch&) = delete;
-  std::filesystem::path file(const char* name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 class Bench {
  public:
@@ -117,7 +99,7 @@ class Bench {
   }
 
   void measure(const std::string& name, const std::string& load, const LoadedProblem& loaded) {
-    const auto file = scratch_.file("problem.json");
+    const auto file = scratch_.path() / "problem.json";
     std::ofstream(file) << to_json(loaded.problem, {}, {});
     if (!arguments_.keep.empty()) {
       const auto kept = fmt::format("{}-{}-{}.json", name, loaded.problem.frame.nodes_mm.size(), load);
@@ -176,7 +158,7 @@ class Bench {
   }
 
   const Arguments& arguments_;
-  Scratch scratch_;
+  test::TemporaryFolder scratch_;
   std::optional<std::filesystem::path> oracle_;
   nlohmann::json rows_ = nlohmann::json::array();
   bool failed_ = false, unequal_ = false;

@@ -15,7 +15,7 @@
 
 #include "client/call/retry.h"
 #include "tests/client/fake/fake_server.h"
-#include "tests/client/fake/temporary_folder.h"
+#include "tests/fixture/temporary_folder.h"
 
 namespace skinframe::client {
 namespace {
@@ -47,7 +47,7 @@ class Program : public fake::FakeServer {
   }
   std::string mesh() { return folder_.write("mesh.stl", "mesh"); }
 
-  fake::TemporaryFolder folder_;
+  test::TemporaryFolder folder_;
   std::string environment_;
 };
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/client/fake/temporary_folder.h"
+#include "tests/fixture/temporary_folder.h"
 
 namespace skinframe::client {
 namespace {
@@ -11,7 +11,7 @@ namespace {
 class InputKindTest : public testing::Test {
  protected:
   InputKind kind(const std::string& content) { return input_kind(folder_.write("file", content)); }
-  fake::TemporaryFolder folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(InputKindTest, AJsonObjectIsAFrameProblemWhateverTheFileIsCalled) {

@@ -6,7 +6,7 @@
 #include "client/transfer/sha256.h"
 #include "client/transfer/upload.h"
 #include "tests/client/fake/fake_server.h"
-#include "tests/client/fake/temporary_folder.h"
+#include "tests/fixture/temporary_folder.h"
 
 namespace skinframe::client {
 namespace {
@@ -28,7 +28,7 @@ class Transfer : public fake::FakeServer {
     file->set_size_bytes(static_cast<std::int64_t>(content.size()));
     return job;
   }
-  fake::TemporaryFolder folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST(Sha256Test, IsThatOfTheStandard) {  // FIPS 180-2, appendix B.1

@@ -15,7 +15,7 @@
 
 #include "skinframe/v1/worker.grpc.pb.h"
 #include "tests/client/fake/fake_artifacts.h"
-#include "tests/worker/agent/temporary_folder.h"
+#include "tests/fixture/temporary_folder.h"
 #include "worker/agent/artifact_transfer.h"
 
 namespace skinframe::agent {
@@ -95,7 +95,7 @@ class AgentTest : public testing::Test {
   }
 
   void start_agent(const std::string& script) {
-    options_.self_executable = folder_.script(script);
+    options_.self_executable = folder_.script("job.sh", script);
     const auto channel =
         grpc::CreateChannel("127.0.0.1:" + std::to_string(port_), grpc::InsecureChannelCredentials());
     agent_ = std::thread([this, channel] {
@@ -139,11 +139,11 @@ class AgentTest : public testing::Test {
 
   // SHA-256 of "mesh"
   const std::string kMeshHash = [] {
-    const TemporaryFolder folder;
+    const test::TemporaryFolder folder;
     std::ofstream(folder.path() / "m") << "mesh";
     return digest_file(folder.path() / "m")->sha256;
   }();
-  TemporaryFolder folder_;
+  test::TemporaryFolder folder_;
   fake::FakeArtifacts artifacts_;
   FakeWorkerService workers_;
   AgentOptions options_;
@@ -243,7 +243,7 @@ TEST_F(AgentTest, AStoppedWorkerHandsItsJobBackAtOnce) {
 // The server's threads in this process have no signal blocked, as a library's have not.
 TEST_F(AgentTest, AStopSignalEndsTheAgentCleanlyWhicheverThreadItReaches) {
   options_.server_address = "127.0.0.1:" + std::to_string(port_);
-  options_.self_executable = folder_.script("while :; do :; done\n");
+  options_.self_executable = folder_.script("job.sh", "while :; do :; done\n");
   assign();
   int code = -1;
   agent_ = std::thread([&] { code = run_agent(options_); });

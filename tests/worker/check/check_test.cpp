@@ -32,7 +32,7 @@ void write_json(const fs::path& path, const json& document) { std::ofstream(path
 class CheckTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    folder_ = new test::ScratchFolder;
+    folder_ = new test::TemporaryFolder;
     JobRequest request = test::sample_job("egg", 60, 60, folder_->path());
     request.loads = {{"side", Place::kTop, {1, 0, 0}, 5}};
     RunContext context;
@@ -76,9 +76,9 @@ class CheckTest : public testing::Test {
     });
   }
 
-  static test::ScratchFolder* folder_;
+  static test::TemporaryFolder* folder_;
 };
-test::ScratchFolder* CheckTest::folder_ = nullptr;
+test::TemporaryFolder* CheckTest::folder_ = nullptr;
 
 MATCHER_P(Names, name, "") { return std::find(arg.begin(), arg.end(), name) != arg.end(); }
 

@@ -64,7 +64,7 @@ class SolutionTest : public ::testing::Test {
   json read(const char* name) const { return json::parse(std::ifstream(folder_.path() / name)); }
   void write(const char* name, const json& document) { std::ofstream(folder_.path() / name) << document; }
 
-  test::ScratchFolder folder_;
+  test::TemporaryFolder folder_;
 };
 
 TEST_F(SolutionTest, AnHonestResultHoldsInEveryClaimAndEachLieIsDenied) {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <fstream>
 
+#include "tests/fixture/temporary_folder.h"
 #include "tests/worker/skin/bodies.h"
 #include "worker/mesh/read_mesh.h"
 
@@ -16,17 +16,12 @@ namespace fs = std::filesystem;
 
 class Write3mf : public testing::Test {
  protected:
-  Write3mf() {
-    std::string pattern = (fs::temp_directory_path() / "skinframe-3mf-XXXXXX").string();
-    SKINFRAME_CHECK(mkdtemp(pattern.data()) != nullptr);
-    folder_ = pattern;
-  }
-  ~Write3mf() override { fs::remove_all(folder_); }
   static std::string bytes_of(const fs::path& path) {
     std::ifstream in(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
-  fs::path folder_;
+  test::TemporaryFolder scratch_;
+  const fs::path& folder_ = scratch_.path();
 };
 
 TEST_F(Write3mf, ReadsBackAsTheSameMeshInMillimetres) {

@@ -42,7 +42,7 @@ class FrameJob : public ::testing::Test {
     return lines;
   }
 
-  test::ScratchFolder folder_;
+  test::TemporaryFolder folder_;
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> events_{std::tmpfile(), std::fclose};
 };
 

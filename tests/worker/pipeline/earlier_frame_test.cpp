@@ -28,7 +28,7 @@ class EarlierFrame : public ::testing::Test {
  protected:
   // One job of an egg pushed aside at its top serves all tests of this file.
   static void SetUpTestSuite() {
-    folder_ = new test::ScratchFolder;
+    folder_ = new test::TemporaryFolder;
     run(request(kForce), "earlier");
   }
   static void TearDownTestSuite() {
@@ -63,9 +63,9 @@ class EarlierFrame : public ::testing::Test {
     return folder_->path() / "spoiled.json";
   }
 
-  static test::ScratchFolder* folder_;
+  static test::TemporaryFolder* folder_;
 };
-test::ScratchFolder* EarlierFrame::folder_ = nullptr;
+test::TemporaryFolder* EarlierFrame::folder_ = nullptr;
 
 TEST_F(EarlierFrame, AStrongerPushStartsFromAllOfItAndEndsAsWellAsFromNothing) {
   const json cold = run(request(1.25 * kForce), "cold"), from = run(warm(request(1.25 * kForce)), "warm");

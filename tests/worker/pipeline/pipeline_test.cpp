@@ -26,7 +26,7 @@ json read_json(const fs::path& path) {
 }
 
 TEST(Pipeline, ARefusedPrinterDoesNotSinkTheOthers) {
-  test::ScratchFolder folder;
+  test::TemporaryFolder folder;
   JobRequest request = test::sample_job("egg", 60, 60, folder.path());
   PrinterRequest small = test::sinterstation_pa();
   small.printer.id = "matchbox";
@@ -42,7 +42,7 @@ TEST(Pipeline, ARefusedPrinterDoesNotSinkTheOthers) {
 }
 
 TEST(Pipeline, ABodyThinEverywhereComesBackSolidWithAWarning) {
-  test::ScratchFolder folder;
+  test::TemporaryFolder folder;
   JobRequest request = test::sample_job("egg", 60, 60, folder.path());
   TriangleMesh plate = test::box_mesh();
   for (auto& v : plate.vertices) v.z() *= 1.6 / 40;
@@ -68,7 +68,7 @@ TEST(Pipeline, ABodyThinEverywhereComesBackSolidWithAWarning) {
 }
 
 TEST(Pipeline, AThinSheetIsToldSolidAndWithoutInternalNodes) {
-  test::ScratchFolder folder;
+  test::TemporaryFolder folder;
   JobRequest request = test::sample_job("egg", 60, 60, folder.path());
   // A block of 19.2 x 20 x 40 mm with a fin of 1.2 x 20 x 40 mm on its side.
   const TriangleMesh body =
@@ -99,7 +99,7 @@ TEST(Pipeline, AThinSheetIsToldSolidAndWithoutInternalNodes) {
 }
 
 TEST(Pipeline, SameInputAndSeedGiveTheSameFrame) {
-  test::ScratchFolder folder;
+  test::TemporaryFolder folder;
   JobRequest request = test::sample_job("egg", 60, 60, folder.path());
   request.loads = {{"side", Place::kTop, {2, 0, 0}, 5}};
   std::string frames[2];
@@ -116,7 +116,7 @@ TEST(Pipeline, SameInputAndSeedGiveTheSameFrame) {
 }
 
 TEST(Pipeline, ProgressNamesEveryStageInOrder) {
-  test::ScratchFolder folder;
+  test::TemporaryFolder folder;
   JobRequest request = test::sample_job("egg", 60, 60, folder.path());
   std::vector<Stage> stages;
   PipelineObserver observer;
@@ -132,7 +132,7 @@ TEST(Pipeline, ProgressNamesEveryStageInOrder) {
 }
 
 TEST(Pipeline, CancellationEndsTheJobWithoutAResult) {
-  test::ScratchFolder folder;
+  test::TemporaryFolder folder;
   JobRequest request = test::sample_job("egg", 60, 60, folder.path());
   std::stop_source stop;
   PipelineObserver observer;
@@ -148,7 +148,7 @@ TEST(Pipeline, CancellationEndsTheJobWithoutAResult) {
 }
 
 TEST(Pipeline, WithoutOptimisationRadiiStandAtTheirLowerBoundsAndNoLimitIsClaimed) {
-  test::ScratchFolder folder;
+  test::TemporaryFolder folder;
   JobRequest request = test::sample_job("egg", 60, 60, folder.path());
   request.options.no_optimize = true;
   RunContext context;
@@ -163,7 +163,7 @@ TEST(Pipeline, WithoutOptimisationRadiiStandAtTheirLowerBoundsAndNoLimitIsClaime
 // Figure 7 of the paper: with the smaller base the centre of gravity of the light structure would fall
 // outside, and mass has to go low and to the other side: into the pillar.
 TEST(Pipeline, TheSmallerBaseGetsAThickerPillar) {
-  test::ScratchFolder folder;
+  test::TemporaryFolder folder;
   double pillar_mm3[2] = {0, 0};
   const char* names[2] = {"hanging-ball", "hanging-ball-small-base"};
   for (int i = 0; i < 2; ++i) {

@@ -13,7 +13,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 
 Result<PreparedSolid> prepare(const TriangleMesh& mesh, std::optional<double> size_mm) {
-  test::ScratchFolder folder;
+  test::TemporaryFolder folder;
   JobRequest request;
   request.mesh_name = "body.stl";
   request.mesh_path = folder.path() / request.mesh_name;

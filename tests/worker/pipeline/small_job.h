@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/fixture/temporary_folder.h"
 #include "worker/mesh/write_stl.h"
 #include "worker/pipeline/pipeline.h"
 #include "worker/sample/make_sample.h"
@@ -17,23 +18,6 @@ inline PrinterRequest sinterstation_pa() {
   request.material = {"pa", 1586, 1387, 43, 48, 60, 1.15};
   return request;
 }
-
-// A folder that goes with the object.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "skinframe-test-XXXXXX").string();
-    SKINFRAME_CHECK(mkdtemp(pattern.data()) != nullptr);
-    path_ = pattern;
-  }
-  ~ScratchFolder() { std::filesystem::remove_all(path_); }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 inline JobRequest sample_job(const std::string& sample, double size_mm, int skin_nodes,
                              const std::filesystem::path& folder) {
