@@ -61,6 +61,12 @@ void ProgressDisplay::show(const v1::JobEvent& event) {
   if (stage == last_stage_ && now - last_line_ < kLinePeriod) return;
   last_stage_ = stage;
   last_line_ = now;
+  // The estimated rest alone is no news: a log shall not repeat itself while a stage has nothing to tell.
+  v1::JobProgress told = progress;
+  told.clear_seconds_left();
+  const std::string text = progress_text(told);
+  if (text == last_told_) return;
+  last_told_ = text;
   line(progress_text(progress));
 }
 

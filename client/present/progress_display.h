@@ -40,6 +40,7 @@ class ProgressDisplay {
   bool paused_ = false;
   bool bar_shown_ = false;
   std::string last_stage_;
+  std::string last_told_;
   std::chrono::steady_clock::time_point last_line_{};
 };
 

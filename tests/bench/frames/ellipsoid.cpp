@@ -4,11 +4,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numbers>
 #include <random>
 #include <set>
 
+#include "tests/worker/fixture/geodesic_sphere.h"
 #include "worker/pipeline/pose_problem.h"
 
 namespace skinframe::bench {
@@ -26,45 +25,9 @@ constexpr double kLeastRoomMm = 1.0;
 const Vector3d kHalfAxes = kHeightMm / (1 - kBaseCut) * Vector3d(0.58, 0.45, 1);
 const double kCentreZ = -kBaseCut * kHalfAxes.z();
 
-// The icosahedron's faces divided into frequency^2 triangles each, pushed to the unit sphere.
-void add_geodesic(int frequency, Frame& frame) {
-  const double g = std::numbers::phi;
-  const Vector3d corners[12] = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
-                                {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-  const int faces[20][3] = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                            {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                            {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                            {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
-  std::map<std::array<long, 3>, int> known;
-  const auto node = [&](const Vector3d& p) {
-    const std::array<long, 3> key{std::lround(p.x() * 1e6), std::lround(p.y() * 1e6),
-                                  std::lround(p.z() * 1e6)};
-    const auto [at, added] = known.emplace(key, static_cast<int>(frame.nodes_mm.size()));
-    if (added) frame.nodes_mm.push_back(p.normalized());
-    return at->second;
-  };
-  for (const auto& face : faces) {
-    const Vector3d &a = corners[face[0]], &b = corners[face[1]], &c = corners[face[2]];
-    const auto grid = [&](int i, int j) {
-      return node(a + (b - a) * i / frequency + (c - a) * j / frequency);
-    };
-    for (int i = 0; i < frequency; ++i)
-      for (int j = 0; i + j < frequency; ++j) {
-        frame.skin_triangles.push_back({grid(i, j), grid(i + 1, j), grid(i, j + 1)});
-        if (i + j + 1 < frequency)
-          frame.skin_triangles.push_back({grid(i + 1, j), grid(i + 1, j + 1), grid(i, j + 1)});
-      }
-  }
-}
-
 void add_skin(int nodes, Frame& frame) {
   const int frequency = std::max(2, static_cast<int>(std::lround(std::sqrt((kSkinShare * nodes - 2) / 10))));
-  add_geodesic(frequency, frame);
-  frame.skin_node_count = static_cast<int>(frame.nodes_mm.size());
-  std::set<std::pair<int, int>> edges;
-  for (const auto& t : frame.skin_triangles)
-    for (int i = 0; i < 3; ++i) edges.insert(std::minmax(t[i], t[(i + 1) % 3]));
-  for (const auto& [a, b] : edges) frame.struts.push_back({a, b, true});
+  frame = test::geodesic_sphere(frequency);
   for (Vector3d& p : frame.nodes_mm) {
     p = p.cwiseProduct(kHalfAxes);
     p.z() = std::max(p.z() + kCentreZ, 0.0);

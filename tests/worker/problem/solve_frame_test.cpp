@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -75,6 +76,18 @@ TEST_F(SolveFrame, CancelledIsExitCode6) {
   RunContext context;
   context.stop = source.get_token();
   EXPECT_EQ(solve_frame_main(problem_, out_, {.json_summary = true}, context), 6);
+}
+
+TEST_F(SolveFrame, VerboseTellsEveryIterationOfTheInteriorPoint) {
+  std::ofstream(problem_) << sample_problem().dump();
+  RunContext context;
+  ::testing::internal::CaptureStderr();
+  ASSERT_EQ(solve_frame_main(problem_, out_, {.json_summary = true, .verbose = true}, context), 0);
+  const std::string told = ::testing::internal::GetCapturedStderr();
+  const auto lines = std::count(told.begin(), told.end(), '\n');
+  EXPECT_GT(lines, result()["iterations"]["interior_point"].get<int>())
+      << told;  // a heading before each program
+  EXPECT_GE(result()["iterations"]["factorisations"], result()["iterations"]["interior_point"]);
 }
 
 }  // namespace
