@@ -24,6 +24,18 @@ const char* name_of(v1::PrintProcess process) {
   }
 }
 
+const char* name_of(v1::BuildDirection direction) {
+  switch (direction) {
+    case v1::BUILD_DIRECTION_UNSPECIFIED:
+    case v1::BUILD_DIRECTION_UP:
+      return "up";
+    case v1::BUILD_DIRECTION_HANGING:
+      return "hanging";
+    default:
+      return nullptr;
+  }
+}
+
 const char* name_of(v1::Axis axis) {
   switch (axis) {
     case v1::AXIS_X:
@@ -114,6 +126,14 @@ json or_null(bool present, T value) {
   return present ? json(value) : json(nullptr);
 }
 
+json printable_length_json(const v1::PrintableLength& curve) {
+  json points = json::array();
+  for (const auto& point : curve.points())
+    points.push_back(
+        {{"angle_deg", point.angle_deg()}, {"length_mm", or_null(point.has_length_mm(), point.length_mm())}});
+  return {{"points", std::move(points)}, {"is_default", curve.is_default()}, {"source", curve.source()}};
+}
+
 json xyz(const v1::Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 Result<json> printer_json(const v1::PrinterProfile& printer, const v1::MaterialProfile& material) {
@@ -122,11 +142,25 @@ Result<json> printer_json(const v1::PrinterProfile& printer, const v1::MaterialP
     return internal_error(fmt::format("printer {}: print process {} is unknown to this worker", printer.id(),
                                       static_cast<int>(printer.process())));
   }
+  const char* direction = name_of(printer.build_direction());
+  if (direction == nullptr) {
+    return internal_error(fmt::format("printer {}: build direction {} is unknown to this worker",
+                                      printer.id(), static_cast<int>(printer.build_direction())));
+  }
   json p = {{"id", printer.id()},
             {"process", process},
             {"min_radius_mm", printer.min_radius_mm()},
             {"tray_mm", {printer.tray_x_mm(), printer.tray_y_mm(), printer.tray_z_mm()}},
-            {"max_internal_radius_mm", printer.max_internal_radius_mm()}};
+            {"max_internal_radius_mm", printer.max_internal_radius_mm()},
+            {"printable_length", nullptr},
+            {"drain_holes", nullptr},
+            {"build_direction", direction},
+            {"neck_diameter_mm", or_null(printer.has_neck_diameter_mm(), printer.neck_diameter_mm())}};
+  if (printer.has_printable_length())
+    p["printable_length"] = printable_length_json(printer.printable_length());
+  if (printer.has_drain_holes())
+    p["drain_holes"] = {{"diameter_mm", printer.drain_holes().diameter_mm()},
+                        {"least_count", printer.drain_holes().least_count()}};
   json m = {
       {"id", material.id()},
       {"tensile_modulus_mpa", material.tensile_modulus_mpa()},

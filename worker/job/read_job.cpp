@@ -63,6 +63,16 @@ Enum choice(const json& object, const char* key, const std::map<std::string, Enu
   return it->second;
 }
 
+PrintableLength parse_printable_length(const json& item) {
+  std::vector<PrintableLength::Point> points;
+  for (const json& point : item.at("points"))
+    points.push_back({number(point, "angle_deg", 0, 90), optional_number(point, "length_mm", 1e-3, 1e6)});
+  auto curve = PrintableLength::make(std::move(points), item.at("is_default").get<bool>(),
+                                     item.at("source").get<std::string>());
+  if (!curve) refuse("printable_length: " + curve.error().message);
+  return std::move(curve).value();
+}
+
 PrinterRequest parse_printer(const json& item) {
   PrinterRequest request;
   const json& printer = item.at("printer");
@@ -75,6 +85,17 @@ PrinterRequest parse_printer(const json& item) {
   request.printer.tray_mm = vector3(printer.at("tray_mm"), "tray_mm");
   request.printer.max_internal_radius_mm =
       number(printer, "max_internal_radius_mm", request.printer.min_radius_mm, 500);
+  if (is_given(printer, "printable_length"))
+    request.printer.printable_length = parse_printable_length(printer.at("printable_length"));
+  if (is_given(printer, "drain_holes")) {
+    const json& rule = printer.at("drain_holes");
+    request.printer.drain_holes = DrainHoleRule{number(rule, "diameter_mm", 0.1, 1000),
+                                                optional_count(rule, "least_count", 1, 64).value_or(1)};
+  }
+  if (is_given(printer, "build_direction"))
+    request.printer.build_direction = choice<BuildDirection>(
+        printer, "build_direction", {{"up", BuildDirection::kUp}, {"hanging", BuildDirection::kHanging}});
+  request.printer.neck_diameter_mm = optional_number(printer, "neck_diameter_mm", 0.01, 100);
   const json& material = item.at("material");
   request.material.id = material.at("id").get<std::string>();
   request.material.tensile_modulus_mpa = number(material, "tensile_modulus_mpa", 1e-3, 1e7);

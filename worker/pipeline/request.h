@@ -13,18 +13,32 @@
 #include <vector>
 
 #include "worker/mechanics/frame_problem.h"
+#include "worker/profile/printable_length.h"
 #include "worker/solid/place.h"
 
 namespace skinframe {
 
 enum class PrintProcess { kPowder, kExtrusion, kResin };
 
+// Where the layers grow to: away from the ground, or towards it with the part hanging from the plate.
+enum class BuildDirection { kUp, kHanging };
+
+// Holes through which powder or resin leaves the cavity.
+struct DrainHoleRule {
+  double diameter_mm = 0;
+  int least_count = 0;
+};
+
 struct PrinterProfile {
   std::string id;
   PrintProcess process = PrintProcess::kPowder;
   double min_radius_mm = 0;  // eta in Table 1; the skin is twice as thick
   Eigen::Vector3d tray_mm = Eigen::Vector3d::Zero();
-  double max_internal_radius_mm = 5;  // upper bound of (10)
+  double max_internal_radius_mm = 5;                // upper bound of (10)
+  std::optional<PrintableLength> printable_length;  // p(theta) of 4.5; none: no limit
+  std::optional<DrainHoleRule> drain_holes;         // none: no holes are made
+  BuildDirection build_direction = BuildDirection::kUp;
+  std::optional<double> neck_diameter_mm;  // of an external support strut at the skin, where it is broken off
 
   double skin_thickness_mm() const { return 2 * min_radius_mm; }  // h_S
 };

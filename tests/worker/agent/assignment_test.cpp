@@ -62,6 +62,33 @@ TEST(AssignmentTranslation, ProfilesKeepTheirFiguresAndAnAbsentLimitIsNull) {
   EXPECT_TRUE(p["material"]["slenderness"].is_null());
 }
 
+TEST(AssignmentTranslation, WhatThePrinterPrintsWithoutSupportIsHandedOn) {
+  const json absent = translated(minimal())["printers"][0]["printer"];
+  EXPECT_TRUE(absent.at("printable_length").is_null());
+  EXPECT_TRUE(absent.at("drain_holes").is_null());
+  EXPECT_TRUE(absent.at("neck_diameter_mm").is_null());
+  EXPECT_EQ(absent["build_direction"], "up");
+
+  auto a = minimal();
+  auto* printer = a.mutable_printers(0);
+  auto* curve = printer->mutable_printable_length();
+  curve->add_points()->set_angle_deg(45);
+  curve->add_points()->set_angle_deg(90);
+  curve->mutable_points(1)->set_length_mm(10);
+  curve->set_is_default(true);
+  curve->set_source("an assumption");
+  printer->mutable_drain_holes()->set_diameter_mm(20);
+  printer->mutable_drain_holes()->set_least_count(2);
+  printer->set_build_direction(v1::BUILD_DIRECTION_HANGING);
+  printer->set_neck_diameter_mm(0.8);
+  const json p = translated(a)["printers"][0]["printer"];
+  EXPECT_EQ(p["printable_length"], json::parse(R"({"points": [{"angle_deg": 45.0, "length_mm": null},
+    {"angle_deg": 90.0, "length_mm": 10.0}], "is_default": true, "source": "an assumption"})"));
+  EXPECT_EQ(p["drain_holes"], json::parse(R"({"diameter_mm": 20.0, "least_count": 2})"));
+  EXPECT_EQ(p["build_direction"], "hanging");
+  EXPECT_EQ(p["neck_diameter_mm"], 0.8);
+}
+
 TEST(AssignmentTranslation, ALoadActsAtAPlaceOrAtAPointNeverBoth) {
   auto a = minimal();
   auto* side = a.mutable_spec()->add_loads();

@@ -41,6 +41,37 @@ TEST(ReadJob, EveryFieldArrives) {
   EXPECT_EQ(job->threads, 2);
 }
 
+TEST(ReadJob, WhatThePrinterPrintsWithoutSupportArrives) {
+  json document = valid_job();
+  document["printers"][0]["printer"].update(json::parse(R"({
+    "printable_length": {"points": [{"angle_deg": 45, "length_mm": null}, {"angle_deg": 90, "length_mm": 10}],
+                         "is_default": true, "source": "an assumption"},
+    "drain_holes": {"diameter_mm": 20, "least_count": 2}, "build_direction": "hanging", "neck_diameter_mm": 0.8})"));
+  const auto job = parse_job(document);
+  ASSERT_TRUE(job.ok()) << job.error().message;
+  const PrinterProfile& printer = job->request.printers[0].printer;
+  EXPECT_EQ(printer.printable_length->points()[1].length_mm, 10);
+  EXPECT_TRUE(printer.printable_length->is_default());
+  EXPECT_EQ(printer.printable_length->source(), "an assumption");
+  EXPECT_EQ(printer.drain_holes->diameter_mm, 20);
+  EXPECT_EQ(printer.drain_holes->least_count, 2);
+  EXPECT_EQ(printer.build_direction, BuildDirection::kHanging);
+  EXPECT_EQ(printer.neck_diameter_mm, 0.8);
+
+  const auto plain = parse_job(valid_job());
+  EXPECT_FALSE(plain->request.printers[0].printer.printable_length);
+  EXPECT_FALSE(plain->request.printers[0].printer.drain_holes);
+}
+
+TEST(ReadJob, ACurveThatDoesNotReachFlatStrutsIsRefused) {
+  json document = valid_job();
+  document["printers"][0]["printer"]["printable_length"] = json::parse(
+      R"({"points": [{"angle_deg": 45, "length_mm": 20}], "is_default": false, "source": "measured"})");
+  const auto job = parse_job(document);
+  ASSERT_FALSE(job.ok());
+  EXPECT_NE(job.error().message.find("printable_length"), std::string::npos) << job.error().message;
+}
+
 TEST(ReadJob, AFrameProblemIsItsFileAndAName) {
   const auto job = parse_job(json::parse(
       R"({"job_id": "j1", "frame_problem_path": "/w/problem.json", "mesh_name": "tower.json", "threads": 1})"));
