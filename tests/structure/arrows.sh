@@ -20,10 +20,10 @@ forbid() {
 forbid client '(worker|server)/' "the client knows proto/ only"
 forbid server '(worker|client)/' "the server knows proto/ only"
 forbid worker '(server|client)/' "the worker knows proto/ only"
-for room in run profile mesh solid skin stress frame mechanics optimize problem export report sample pipeline check job; do
+for room in run profile mesh solid skin stress frame mechanics optimize support problem export report sample pipeline check job; do
   forbid "worker/$room" '(skinframe/v1|grpc|google/protobuf)' "only the agent sees gRPC and protobuf"
 done
-stages=(profile mesh solid skin stress frame mechanics optimize problem export report pipeline)
+stages=(profile mesh solid skin stress frame mechanics optimize support problem export report pipeline)
 for i in "${!stages[@]}"; do
   for j in "${!stages[@]}"; do
     if [ "$j" -gt "$i" ]; then
