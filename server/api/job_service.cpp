@@ -167,8 +167,9 @@ grpc::ServerUnaryReactor* JobService::CancelJob(grpc::CallbackServerContext* con
       parts_.executor, context,
       [=, this]() -> absl::Status {
         const Time now = parts_.clock.now();
-        auto after = parts_.store.modify(
-            request->job_id(), [now](const JobRecord& record) { return decide_cancel(record, now); });
+        auto after = parts_.store.modify(request->job_id(), [&](const JobRecord& record) {
+          return decide_cancel(record, now, parts_.policy);
+        });
         if (after.ok()) *response = std::move(after->job);
         return after.status();
       },

@@ -17,6 +17,7 @@ v1::Assignment assignment_of(const JobRecord& record, const AttemptPolicy& polic
   for (const auto& material : record.materials) *assignment.add_materials() = material;
   for (const auto& file : record.warm_start_files) *assignment.add_warm_start_files() = file;
   *assignment.mutable_heartbeat_interval() = to_duration(policy.heartbeat);
+  *assignment.mutable_lease_duration() = to_duration(policy.lease);
   *assignment.mutable_lease_expire_time() = to_timestamp(record.lease.expires);
   if (record.deadline) *assignment.mutable_deadline() = to_timestamp(*record.deadline);
   return assignment;

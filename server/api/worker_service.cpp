@@ -3,7 +3,9 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <string>
+#include <utility>
 
 #include "server/api/answer.h"
 #include "server/api/lease_call.h"
@@ -44,16 +46,30 @@ grpc::ServerUnaryReactor* WorkerService::Heartbeat(grpc::CallbackServerContext* 
 absl::Status WorkerService::heartbeat(const v1::HeartbeatRequest& request, v1::HeartbeatResponse& response) {
   if (auto status = validate_heartbeat(request); !status.ok()) return status;
   const Time now = parts_.clock.now();
-  const auto after = parts_.store.modify(request.job_id(), [&](const JobRecord& record) -> Decision {
+  const auto decide = [&](const JobRecord& record) -> Decision {
     Decision decision = decide_heartbeat(record, request, now, parts_.policy);
     if (!decision.ok()) return decision;  // a late worker hears of its token first
     if (auto status = printers_are_the_jobs(record.job.spec(), request); !status.ok()) return status;
     return decision;
-  });
+  };
+  auto after = look_first(request, decide);
   if (!after.ok()) return gone_is_aborted(after.status());
   response.set_cancel(must_stop(*after, now));
+  *response.mutable_lease_left() = to_duration(std::max(Milliseconds(0), after->lease.expires - now));
   *response.mutable_lease_expire_time() = to_timestamp(after->lease.expires);
   return absl::OkStatus();
+}
+
+// Most heartbeats only ask whether to stop: these cost a read, and neither a lock nor a commit.
+absl::StatusOr<JobRecord> WorkerService::look_first(const v1::HeartbeatRequest& request,
+                                                    const Decide& decide) {
+  if (request.progress_size() > 0 || request.printers_size() > 0)
+    return parts_.store.modify(request.job_id(), decide);
+  auto record = parts_.store.get(request.job_id());
+  if (!record.ok()) return record;
+  const Decision decision = decide(*record);
+  if (!decision.ok()) return decision.status();
+  return decision->has_value() ? parts_.store.modify(request.job_id(), decide) : std::move(record);
 }
 
 grpc::ServerUnaryReactor* WorkerService::Complete(grpc::CallbackServerContext* context,

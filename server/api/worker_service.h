@@ -21,6 +21,7 @@ class WorkerService final : public v1::WorkerService::CallbackService {
 
  private:
   absl::Status heartbeat(const v1::HeartbeatRequest& request, v1::HeartbeatResponse& response);
+  absl::StatusOr<JobRecord> look_first(const v1::HeartbeatRequest& request, const Decide& decide);
   absl::Status complete(const v1::CompleteRequest& request);
 
   Parts parts_;

@@ -82,6 +82,7 @@ std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* c
   ServerOptions options;
   double lease_seconds = static_cast<double>(options.policy.lease.count()) / 1000;
   double heartbeat_seconds = static_cast<double>(options.policy.heartbeat.count()) / 1000;
+  double ageing_seconds = static_cast<double>(options.policy.ageing.count()) / 1000;
   CLI::App app(
       "Keeps the jobs of skinframe: takes them from clients, gives them to workers, keeps their results.",
       "skinframe-server");
@@ -101,9 +102,14 @@ std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* c
   app.add_option(
       "--artifacts", options.artifacts,
       "folder of meshes and results; default DATA/artifacts; shared by all servers of one database");
-  app.add_option("--lease-seconds", lease_seconds, "a worker silent for so long loses its job")
+  app.add_option("--lease,--lease-seconds", lease_seconds,
+                 "seconds; a worker silent for so long loses its job")
       ->capture_default_str();
-  app.add_option("--heartbeat-seconds", heartbeat_seconds, "how often workers report")->capture_default_str();
+  app.add_option("--heartbeat,--heartbeat-seconds", heartbeat_seconds,
+                 "seconds; a worker prolongs its lease at least this often")
+      ->capture_default_str();
+  app.add_option("--ageing", ageing_seconds, "seconds of waiting that weigh as much as one point of priority")
+      ->capture_default_str();
   app.add_option("--max-attempts", options.policy.max_attempts, "lost attempts after which a job FAILED")
       ->capture_default_str();
   app.add_option("--queue-limit", options.queue_limit, "queued jobs beyond which submission is refused")
@@ -119,12 +125,13 @@ std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* c
     const std::string text = text_of(app, error, code);
     return EarlyEnd{text, code == 0 ? 0 : 2};
   }
-  if (!std::isfinite(lease_seconds) || !std::isfinite(heartbeat_seconds) || std::abs(lease_seconds) > 1e6 ||
-      std::abs(heartbeat_seconds) > 1e6) {
-    return EarlyEnd{"--lease-seconds and --heartbeat-seconds must be plain numbers of seconds\n", 2};
+  for (const double seconds : {lease_seconds, heartbeat_seconds, ageing_seconds}) {
+    if (!std::isfinite(seconds) || std::abs(seconds) > 1e6)
+      return EarlyEnd{"--lease, --heartbeat and --ageing must be plain numbers of seconds\n", 2};
   }
   options.policy.lease = from_seconds(lease_seconds);
   options.policy.heartbeat = from_seconds(heartbeat_seconds);
+  options.policy.ageing = from_seconds(ageing_seconds);
   return options;
 }
 

@@ -134,12 +134,14 @@ Change decide_submit(JobRecord record, Time now) {
   return change;
 }
 
-Decision decide_cancel(const JobRecord& record, Time now) {
+Decision decide_cancel(const JobRecord& record, Time now, const AttemptPolicy& policy) {
   if (is_final(record.job.state()) || record.job.cancel_requested()) return std::nullopt;
   Change change{record, {}};
   change.record.job.set_cancel_requested(true);
   if (record.job.state() == v1::JOB_STATE_QUEUED) {
     move_job(change, Trigger::kCancelled, v1::REASON_CANCELLED, "cancelled on request", now);
+  } else {
+    change.record.lease.expires = std::min(record.lease.expires, now + policy.cancel_patience);
   }
   return change;
 }
@@ -163,6 +165,9 @@ bool must_stop(const JobRecord& record, Time now) {
 Decision decide_heartbeat(const JobRecord& record, const v1::HeartbeatRequest& request, Time now,
                           const AttemptPolicy& policy) {
   if (!holds_lease(record, request.fencing_token())) return stale_token(record, request.fencing_token());
+  const bool news = request.progress_size() > 0 || request.printers_size() > 0;
+  const bool fresh = now < record.lease.expires - policy.lease + policy.heartbeat;
+  if (!news && (fresh || must_stop(record, now))) return std::nullopt;
   Change change{record, {}};
   if (!must_stop(record, now)) change.record.lease.expires = now + policy.lease;
   for (const v1::JobProgress& progress : request.progress()) {

@@ -22,17 +22,19 @@ using Decision = absl::StatusOr<std::optional<Change>>;
 // A new job: QUEUED, with its first event. record holds id, spec, profiles, request id and digest.
 Change decide_submit(JobRecord record, Time now);
 
-// CancelJob. Queued: CANCELLED at once. Running: cancel_requested; heartbeats tell the worker. Ended:
-// nothing.
-Decision decide_cancel(const JobRecord& record, Time now);
+// CancelJob. Queued: CANCELLED at once. Running: cancel_requested; heartbeats tell the worker, and a lease
+// that lasts longer than the policy's patience is cut to that, so that a worker that does not obey loses the
+// job. Ended: nothing.
+Decision decide_cancel(const JobRecord& record, Time now, const AttemptPolicy& policy);
 
 // The worker named takes the queued job.
 Change decide_lease(const JobRecord& record, std::int64_t fencing_token, const std::string& worker_id,
                     const std::string& instance_id, Time now, const AttemptPolicy& policy);
 
 // A heartbeat of the token's holder prolongs the lease, and progress and printer results become events.
-// ABORTED: the token is no longer the job's. Once the job shall stop the lease is not prolonged any more: a
-// worker that does not obey loses it.
+// Nothing when it brings no news and the lease was prolonged less than a heartbeat's interval ago: that is a
+// question whether to stop. ABORTED: the token is no longer the job's. Once the job shall stop the lease is
+// not prolonged any more: a worker that does not obey loses it.
 Decision decide_heartbeat(const JobRecord& record, const v1::HeartbeatRequest& request, Time now,
                           const AttemptPolicy& policy);
 

@@ -35,13 +35,10 @@ Heartbeater::Heartbeater(v1::WorkerService::StubInterface& stub, const v1::Assig
       job_id_(assignment.job_id()),
       fencing_token_(assignment.fencing_token()),
       period_(std::min(asked_interval(assignment), kHeartbeatPeriod)),
-      // The expiry comes as the server's time of day. Where the clocks of the two machines differ it may look
-      // past already; the lease lasts several intervals at least, and a beat too many is answered ABORTED.
-      shortest_lease_(2 * asked_interval(assignment)),
       deadline_(assignment.has_deadline() ? to_system(assignment.deadline())
                                           : system_clock::time_point::max()),
       on_worker_stop_(std::move(worker_stop), [this] { stop_job(StopCause::kWorkerStopped); }) {
-  prolong(assignment.lease_expire_time());
+  prolong(assignment.lease_duration(), steady_clock::now());
   thread_ = std::thread([this] { run(); });
 }
 
@@ -104,12 +101,13 @@ void Heartbeater::beat() {
   grpc::ClientContext context;
   context.set_deadline(system_clock::now() + kCallDeadline);
   v1::HeartbeatResponse response;
+  const auto asked = steady_clock::now();
   const grpc::Status status = stub_.Heartbeat(&context, request, &response);
   switch (status.error_code()) {
     case grpc::StatusCode::OK:
       if (!server_answers_) spdlog::info("job={} heartbeats arrive again", job_id_);
       server_answers_ = true;
-      prolong(response.lease_expire_time());
+      prolong(response.lease_left(), asked);
       if (response.cancel()) stop_job(StopCause::kCancelled);
       return;
     case grpc::StatusCode::ABORTED:
@@ -144,10 +142,9 @@ void Heartbeater::stop_job(StopCause cause) {
   stop_.request_stop();
 }
 
-void Heartbeater::prolong(const google::protobuf::Timestamp& server_time) {
-  const auto left = std::chrono::duration_cast<milliseconds>(to_system(server_time) - system_clock::now());
+void Heartbeater::prolong(const google::protobuf::Duration& left, steady_clock::time_point from) {
   const std::lock_guard lock(mutex_);
-  expiry_ = steady_clock::now() + std::clamp<milliseconds>(left, shortest_lease_, std::chrono::hours(1));
+  expiry_ = from + milliseconds(TimeUtil::DurationToMilliseconds(left));
 }
 
 }  // namespace skinframe::agent

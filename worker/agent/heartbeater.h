@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Holds the lease of one job with a thread of its own, from the assignment until just before Complete: tells
-// the progress, hears of cancellation and of the lease's loss, watches the deadline.
+// the progress, hears of cancellation and of the lease's loss, watches the deadline. It asks twice a second
+// and more, whatever the lease's own interval is: that is how soon a cancellation arrives and how fresh
+// progress is.
 #pragma once
 
 #include <atomic>
@@ -18,6 +20,7 @@
 namespace skinframe::agent {
 
 // While something runs a heartbeat goes out at least this often, however rarely the server asks for one.
+// Without news it costs the server a read, until the lease needs prolonging.
 inline constexpr std::chrono::milliseconds kHeartbeatPeriod{350};
 
 class Heartbeater {
@@ -45,13 +48,14 @@ class Heartbeater {
   void run();
   void beat();
   void stop_job(StopCause cause);
-  void prolong(const google::protobuf::Timestamp& server_time);
+  // The lease lasts so long after `from`, which is before the server's answer, so that it is never believed
+  // in for too long whatever the two machines' clocks say.
+  void prolong(const google::protobuf::Duration& left, std::chrono::steady_clock::time_point from);
 
   v1::WorkerService::StubInterface& stub_;
   const std::string job_id_;
   const std::int64_t fencing_token_;
   const std::chrono::milliseconds period_;
-  const std::chrono::milliseconds shortest_lease_;
   std::chrono::system_clock::time_point deadline_;
   std::stop_source stop_;
   std::atomic<StopCause> cause_{StopCause::kNone};

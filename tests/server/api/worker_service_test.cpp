@@ -40,7 +40,8 @@ TEST_F(WorkerServiceTest, AnAssignmentHasAllThatTheWorkNeeds) {
   ASSERT_EQ(assignment.materials_size(), 2);
   EXPECT_EQ(assignment.materials(0).id(), "pa");  // the printer's default
   EXPECT_EQ(assignment.materials(1).id(), "pa");  // as asked
-  EXPECT_EQ(assignment.heartbeat_interval().nanos(), 500'000'000);
+  EXPECT_EQ(assignment.heartbeat_interval().seconds(), 5);
+  EXPECT_EQ(assignment.lease_duration().seconds(), 20);
   EXPECT_EQ(from_timestamp(assignment.lease_expire_time()), clock_.now() + options_.policy.lease);
   EXPECT_EQ(from_timestamp(assignment.deadline()), clock_.now() + std::chrono::seconds(60));
 }

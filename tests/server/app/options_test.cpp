@@ -35,10 +35,11 @@ TEST(Options, DefaultsListenOnLoopback) {
 }
 
 TEST(Options, SecondsBecomeMilliseconds) {
-  const auto parsed = parse({"--data", "d", "--lease-seconds", "2.5", "--heartbeat-seconds", "0.25"});
+  const auto parsed = parse({"--data", "d", "--lease", "2.5", "--heartbeat", "0.25", "--ageing", "30"});
   const auto& options = std::get<ServerOptions>(parsed);
   EXPECT_EQ(options.policy.lease, Milliseconds(2500));
   EXPECT_EQ(options.policy.heartbeat, Milliseconds(250));
+  EXPECT_EQ(options.policy.ageing, Milliseconds(30'000));
 }
 
 TEST(Options, TheNetworkNeedsTlsOrAnExplicitFlag) {
@@ -61,8 +62,8 @@ TEST(Options, WhatIsWrongIsNamed) {
   expect_refused({"--data", "d", "--listen", "127.0.0.1:70000"}, "--listen");
   expect_refused({"--data", "d", "--queue-limit", "0"}, "--queue-limit");
   expect_refused({"--data", "d", "--max-attempts", "0"}, "--max-attempts");
-  expect_refused({"--data", "d", "--lease-seconds", "0"}, "--lease-seconds");
-  expect_refused({"--data", "d", "--heartbeat-seconds", "9"}, "--heartbeat-seconds");
+  expect_refused({"--data", "d", "--lease", "0"}, "--lease");
+  expect_refused({"--data", "d", "--heartbeat", "11"}, "--heartbeat");
 }
 
 TEST(Options, HelpAndVersionEndWithZeroUnknownFlagsWithTwo) {
@@ -71,7 +72,7 @@ TEST(Options, HelpAndVersionEndWithZeroUnknownFlagsWithTwo) {
   EXPECT_NE(std::get<EarlyEnd>(help).text.find("Examples:"), std::string::npos);
   EXPECT_EQ(std::get<EarlyEnd>(parse({"--version"})).exit_code, 0);
   EXPECT_EQ(std::get<EarlyEnd>(parse({"--config", "f"})).exit_code, 2);
-  EXPECT_EQ(std::get<EarlyEnd>(parse({"--lease-seconds", "soon"})).exit_code, 2);
+  EXPECT_EQ(std::get<EarlyEnd>(parse({"--lease", "soon"})).exit_code, 2);
 }
 
 TEST(ListenAddress, LoopbackIsRecognisedInAllItsForms) {

@@ -13,13 +13,25 @@ TEST(AttemptPolicy, DefaultsAreValid) { EXPECT_TRUE(AttemptPolicy{}.validate().o
 TEST(AttemptPolicy, ValidateNamesTheOptionThatIsOutOfRange) {
   AttemptPolicy lease;
   lease.lease = Milliseconds(999);
-  EXPECT_NE(lease.validate().message().find("lease-seconds"), std::string::npos);
+  EXPECT_NE(lease.validate().message().find("lease"), std::string::npos);
   AttemptPolicy heartbeat;
   heartbeat.heartbeat = heartbeat.lease / 2 + Milliseconds(1);
-  EXPECT_NE(heartbeat.validate().message().find("heartbeat-seconds"), std::string::npos);
+  EXPECT_NE(heartbeat.validate().message().find("heartbeat"), std::string::npos);
   AttemptPolicy attempts;
   attempts.max_attempts = 0;
   EXPECT_NE(attempts.validate().message().find("max-attempts"), std::string::npos);
+}
+
+TEST(Rank, APointOfPriorityWeighsAsMuchAsItsAgeing) {
+  const AttemptPolicy policy;
+  const Time noon(Milliseconds(1'700'000'000'000));
+  const auto rank = [&](Milliseconds after, int priority) { return rank_ms(noon + after, priority, policy); };
+  EXPECT_LT(rank(Milliseconds(0), 1), rank(Milliseconds(0), 0));
+  EXPECT_LT(rank(Milliseconds(0), 0), rank(Milliseconds(1), 0));
+  EXPECT_EQ(rank(Milliseconds(0), 3), rank(2 * policy.ageing, 5));
+  // The lowest is overtaken by the highest for 200 points' time, and no longer.
+  EXPECT_GT(rank(Milliseconds(0), -100), rank(200 * policy.ageing - Milliseconds(1), 100));
+  EXPECT_LT(rank(Milliseconds(0), -100), rank(200 * policy.ageing + Milliseconds(1), 100));
 }
 
 TEST(Backoff, DoublesUpToItsBoundAndIsJitteredInTheUpperHalf) {

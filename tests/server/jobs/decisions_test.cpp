@@ -35,23 +35,32 @@ TEST(Submit, QueuesAndTellsSo) {
 }
 
 TEST(Cancel, EndsAQueuedJobAtOnce) {
-  const JobRecord job = after(decide_cancel(queued(), kNoon));
+  const JobRecord job = after(decide_cancel(queued(), kNoon, kPolicy));
   EXPECT_EQ(job.job.state(), v1::JOB_STATE_CANCELLED);
   EXPECT_EQ(job.job.reason(), v1::REASON_CANCELLED);
   EXPECT_TRUE(job.job.has_end_time());
 }
 
 TEST(Cancel, OnlyAsksARunningJobAndOnlyOnce) {
-  const JobRecord job = after(decide_cancel(running(), kNoon));
+  const JobRecord job = after(decide_cancel(running(), kNoon, kPolicy));
   EXPECT_EQ(job.job.state(), v1::JOB_STATE_RUNNING);
   EXPECT_TRUE(must_stop(job, kNoon));
-  EXPECT_FALSE(decide_cancel(job, kNoon)->has_value());
+  EXPECT_FALSE(decide_cancel(job, kNoon, kPolicy)->has_value());
+}
+
+TEST(Cancel, AWorkerThatDoesNotObeyLosesTheJobWithinThePatienceAndNoneGetsMoreTime) {
+  const JobRecord asked = after(decide_cancel(running(), kNoon, kPolicy));
+  EXPECT_EQ(asked.lease.expires, kNoon + kPolicy.cancel_patience);
+  const JobRecord gone = after(decide_lease_expired(asked, kNoon + kPolicy.cancel_patience, kPolicy));
+  EXPECT_EQ(gone.job.state(), v1::JOB_STATE_CANCELLED);
+  const Time late = kNoon + kPolicy.lease - seconds(1);
+  EXPECT_EQ(after(decide_cancel(running(), late, kPolicy)).lease.expires, kNoon + kPolicy.lease);
 }
 
 TEST(Cancel, LeavesAnEndedJobAsItIs) {
   const JobRecord done =
       after(decide_complete(running(), completion("job", 7, v1::JOB_STATE_SUCCEEDED), kNoon, kPolicy));
-  EXPECT_FALSE(decide_cancel(done, kNoon)->has_value());
+  EXPECT_FALSE(decide_cancel(done, kNoon, kPolicy)->has_value());
 }
 
 TEST(Lease, CountsTheAttemptAndCarriesTheToken) {
@@ -78,9 +87,22 @@ TEST(Heartbeat, OfAStaleTokenIsAborted) {
 }
 
 TEST(Heartbeat, DoesNotProlongTheLeaseOfAJobThatShallStop) {
-  const JobRecord asked = after(decide_cancel(running(), kNoon));
-  const JobRecord job = after(decide_heartbeat(asked, heartbeat("job", 7), kNoon + seconds(5), kPolicy));
-  EXPECT_EQ(job.lease.expires, kNoon + kPolicy.lease);
+  const JobRecord asked = after(decide_cancel(running(), kNoon, kPolicy));
+  auto news = heartbeat("job", 7);
+  news.add_progress()->set_stage("size");
+  const JobRecord job = after(decide_heartbeat(asked, news, kNoon + seconds(5), kPolicy));
+  EXPECT_EQ(job.lease.expires, asked.lease.expires);
+  EXPECT_FALSE(decide_heartbeat(asked, heartbeat("job", 7), kNoon + seconds(5), kPolicy)->has_value());
+}
+
+TEST(Heartbeat, WithoutNewsChangesNothingUntilAnIntervalHasPassed) {
+  const auto question = heartbeat("job", 7);
+  EXPECT_FALSE(decide_heartbeat(running(), question, kNoon, kPolicy)->has_value());
+  const Time almost = kNoon + kPolicy.heartbeat - Milliseconds(1);
+  EXPECT_FALSE(decide_heartbeat(running(), question, almost, kPolicy)->has_value());
+  const JobRecord prolonged =
+      after(decide_heartbeat(running(), question, kNoon + kPolicy.heartbeat, kPolicy));
+  EXPECT_EQ(prolonged.lease.expires, kNoon + kPolicy.heartbeat + kPolicy.lease);
 }
 
 TEST(Heartbeat, PrinterResultBecomesAnEventOnceAndUpdatesTheJob) {
@@ -126,14 +148,14 @@ TEST(Complete, RetryableTwiceLosesOneAttempt) {
 }
 
 TEST(Complete, FinishedWorkIsKeptThoughCancellationWasAsked) {
-  const JobRecord asked = after(decide_cancel(running(), kNoon));
+  const JobRecord asked = after(decide_cancel(running(), kNoon, kPolicy));
   const JobRecord done =
       after(decide_complete(asked, completion("job", 7, v1::JOB_STATE_SUCCEEDED), kNoon, kPolicy));
   EXPECT_EQ(done.job.state(), v1::JOB_STATE_SUCCEEDED);
 }
 
 TEST(Complete, CancelledEndsAJobThatWasAskedTo) {
-  const JobRecord asked = after(decide_cancel(running(), kNoon));
+  const JobRecord asked = after(decide_cancel(running(), kNoon, kPolicy));
   const JobRecord done =
       after(decide_complete(asked, completion("job", 7, v1::JOB_STATE_CANCELLED), kNoon, kPolicy));
   EXPECT_EQ(done.job.state(), v1::JOB_STATE_CANCELLED);
@@ -193,7 +215,7 @@ TEST(LeaseExpiry, DoesNothingToALeaseThatWasProlonged) {
 }
 
 TEST(LeaseExpiry, OfAJobAskedToStopCancelsIt) {
-  const JobRecord asked = after(decide_cancel(running(), kNoon));
+  const JobRecord asked = after(decide_cancel(running(), kNoon, kPolicy));
   EXPECT_EQ(after(decide_lease_expired(asked, kNoon + kPolicy.lease, kPolicy)).job.state(),
             v1::JOB_STATE_CANCELLED);
 }
@@ -233,7 +255,7 @@ TEST(WarmStart, IsFromASucceededJobOfTheSameMeshOnly) {
 TEST(Delete, IsForEndedJobsOnly) {
   EXPECT_TRUE(absl::IsFailedPrecondition(permit_delete(queued())));
   EXPECT_TRUE(absl::IsFailedPrecondition(permit_delete(running())));
-  EXPECT_TRUE(permit_delete(after(decide_cancel(queued(), kNoon))).ok());
+  EXPECT_TRUE(permit_delete(after(decide_cancel(queued(), kNoon, kPolicy))).ok());
 }
 
 }  // namespace

@@ -151,7 +151,9 @@ TEST_F(Leases, AfterARestartOfTheServerWorkersGetOneLeaseTimeToReport) {
 TEST_F(Leases, AWorkerThatIgnoresCancellationLosesTheJobWithItsLease) {
   submit(example_record("job"));
   const auto token = lease();
-  ASSERT_TRUE(store_->modify("job", [&](const JobRecord& r) { return decide_cancel(r, clock_.now()); }).ok());
+  ASSERT_TRUE(
+      store_->modify("job", [&](const JobRecord& r) { return decide_cancel(r, clock_.now(), policy_); })
+          .ok());
   for (Milliseconds passed{0}; passed < policy_.lease; passed += policy_.heartbeat) {
     ASSERT_TRUE(beat(token).ok());
     clock_.advance(policy_.heartbeat);

@@ -48,7 +48,9 @@ class Retention : public testing::Test {
 TEST_F(Retention, AnEndedJobIsKeptForItsTimeAndThenForgotten) {
   JobRetention duty(*store_, kDay, kHour);
   for (const char* id : {"ended", "queued"}) submit(id, std::string(64, '0'));
-  ASSERT_TRUE(store_->modify("ended", [](const JobRecord& job) { return decide_cancel(job, kNoon); }).ok());
+  ASSERT_TRUE(
+      store_->modify("ended", [](const JobRecord& job) { return decide_cancel(job, kNoon, AttemptPolicy{}); })
+          .ok());
   ASSERT_TRUE(duty.run_once(kNoon + kDay - Milliseconds(1)).ok());
   EXPECT_TRUE(store_->get("ended").ok());
   ASSERT_TRUE(duty.run_once(kNoon + kDay + kHour).ok());
@@ -61,7 +63,9 @@ TEST_F(Retention, ManyEndedJobsAreForgottenRoundAfterRound) {
   for (int i = 0; i < 250; ++i) {
     const std::string id = "job-" + std::to_string(i);
     submit(id, std::string(64, '0'));
-    ASSERT_TRUE(store_->modify(id, [](const JobRecord& job) { return decide_cancel(job, kNoon); }).ok());
+    ASSERT_TRUE(
+        store_->modify(id, [](const JobRecord& job) { return decide_cancel(job, kNoon, AttemptPolicy{}); })
+            .ok());
   }
   for (int round = 0; round < 3; ++round) ASSERT_TRUE(duty.run_once(kNoon + kDay + kHour).ok());
   EXPECT_TRUE(store_->ended_jobs(kNoon + kDay, 10)->empty());

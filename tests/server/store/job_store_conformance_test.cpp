@@ -42,7 +42,9 @@ class JobStoreConformance : public testing::TestWithParam<StoreKind> {
         job_id, [&](const JobRecord& job) { return decide_heartbeat(job, request, kNoon, kPolicy); });
   }
   absl::Status cancel(const std::string& job_id) {
-    return store_->modify(job_id, [](const JobRecord& job) { return decide_cancel(job, kNoon); }).status();
+    return store_
+        ->modify(job_id, [](const JobRecord& job) { return decide_cancel(job, kNoon, AttemptPolicy{}); })
+        .status();
   }
   std::vector<std::string> listed(const ListQuery& query) {
     auto page = store_->list(query);
@@ -307,10 +309,15 @@ TEST_P(JobStoreConformance, FindsExpiredLeasesAndPassedDeadlinesOldestFirst) {
 
 TEST_P(JobStoreConformance, FindsEndedJobsByTheTimeTheyEnded) {
   for (const char* id : {"a", "b", "queued"}) create(id);
-  ASSERT_TRUE(store_->modify("b", [](const JobRecord& job) { return decide_cancel(job, kNoon); }).ok());
   ASSERT_TRUE(
-      store_->modify("a", [](const JobRecord& job) { return decide_cancel(job, kNoon + Milliseconds(5)); })
+      store_->modify("b", [](const JobRecord& job) { return decide_cancel(job, kNoon, AttemptPolicy{}); })
           .ok());
+  ASSERT_TRUE(store_
+                  ->modify("a",
+                           [](const JobRecord& job) {
+                             return decide_cancel(job, kNoon + Milliseconds(5), AttemptPolicy{});
+                           })
+                  .ok());
   EXPECT_TRUE(store_->ended_jobs(kNoon - Milliseconds(1), 10)->empty());
   EXPECT_EQ(*store_->ended_jobs(kNoon, 10), (std::vector<std::string>{"b"}));
   EXPECT_EQ(*store_->ended_jobs(kNoon + Milliseconds(5), 10), (std::vector<std::string>{"b", "a"}));

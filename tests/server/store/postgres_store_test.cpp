@@ -85,7 +85,9 @@ TEST(PostgresStore, AServerHearsOfChangesOfStateMadeThroughAnotherAndNotOfItsOwn
   ASSERT_TRUE(leased_there.ok() && leased_there->has_value());
   EXPECT_TRUE(here.hears("changed a"));
   // The removal is the last news: all that came before it has been heard by then.
-  ASSERT_TRUE(other->modify("a", [](const JobRecord& job) { return decide_cancel(job, kNoon); }).ok());
+  ASSERT_TRUE(
+      other->modify("a", [](const JobRecord& job) { return decide_cancel(job, kNoon, AttemptPolicy{}); })
+          .ok());
   EXPECT_FALSE(here.heard().contains("queued a"));
   EXPECT_FALSE(there.heard().contains("changed a"));
 }

@@ -58,7 +58,7 @@ class FakeWorkerService final : public v1::WorkerService::Service {
     changed.notify_all();
     if (take_lease_away) return {grpc::StatusCode::ABORTED, "another worker has the job"};
     response->set_cancel(cancel);
-    *response->mutable_lease_expire_time() = TimeUtil::GetCurrentTime() + TimeUtil::SecondsToDuration(10);
+    *response->mutable_lease_left() = TimeUtil::SecondsToDuration(10);
     return grpc::Status::OK;
   }
 
@@ -119,7 +119,7 @@ class AgentTest : public testing::Test {
     a.add_printers()->set_process(v1::PRINT_PROCESS_POWDER);
     a.add_materials();
     *a.mutable_heartbeat_interval() = TimeUtil::MillisecondsToDuration(20);
-    *a.mutable_lease_expire_time() = TimeUtil::GetCurrentTime() + TimeUtil::SecondsToDuration(10);
+    *a.mutable_lease_duration() = TimeUtil::SecondsToDuration(10);
     const std::lock_guard lock(workers_.mutex);
     workers_.queue.push_back(a);
     workers_.changed.notify_all();
