@@ -73,7 +73,7 @@ TEST_P(MainJob, EndsAsItShouldAndItsFilesKeepTheirClaims) {
     int internal = 0;
     for (const json& strut : frame.at("struts")) internal += strut.at("skin").get<bool>() ? 0 : 1;
     const bool balance_is_tight =
-        printer.at("balance") == "holds" && printer.at("balance_margin_mm").get<double>() < 1.0;
+        printer.at("balance") == "holds" && printer.at("printed_balance_margin_mm").get<double>() < 1.0;
     if (!balance_is_tight) {
       EXPECT_EQ(internal, 0);
     }

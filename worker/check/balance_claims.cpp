@@ -64,6 +64,14 @@ double margin_mm(const Polygon& hull, const Eigen::Vector2d& p) {
   return least;
 }
 
+std::string reported(const std::optional<double>& margin_mm) {
+  return margin_mm ? fmt::format("{:.3f}", *margin_mm) : "none";
+}
+
+bool agrees(const std::optional<double>& reported_mm, double measured_mm) {
+  return reported_mm && std::abs(*reported_mm - measured_mm) <= kMarginToleranceMm;
+}
+
 }  // namespace
 
 Eigen::Vector3d nominal_centre_of_gravity_mm(const ExportedFrame& frame) {
@@ -92,15 +100,15 @@ void claim_balance(const ExportedPrinter& result, const TriangleMesh& outer_mesh
   const double solid_margin = margin_mm(hull, volume_centroid(outer_mesh).head<2>());
   const std::string measured = fmt::format(
       "centre of gravity ({:.2f}, {:.2f}) mm is {:.3f} mm inside the base contact (reported {}); of the "
-      "printed "
-      "mesh {:.3f} mm; of the solid {:.3f} mm",
+      "printed mesh {:.3f} mm (reported {}); of the solid {:.3f} mm",
       nominal.x(), nominal.y(), nominal_margin,
-      result.balance_margin_mm ? fmt::format("{:.3f}", *result.balance_margin_mm) : "none", printed_margin,
+      reported(result.balance_margin_mm), printed_margin, reported(result.printed_balance_margin_mm),
       solid_margin);
   if (result.balance == "holds") {
     verdict->claims.push_back({"balance",
-                               nominal_margin >= -1e-6 && printed_margin >= 0 && result.balance_margin_mm &&
-                                   std::abs(nominal_margin - *result.balance_margin_mm) <= kMarginToleranceMm,
+                               nominal_margin >= -1e-6 && printed_margin >= 0 &&
+                                   agrees(result.balance_margin_mm, nominal_margin) &&
+                                   agrees(result.printed_balance_margin_mm, printed_margin),
                                measured});
   } else if (result.balance == "not_standing") {
     verdict->claims.push_back({"not standing", solid_margin < kMarginToleranceMm,

@@ -180,6 +180,7 @@ ExportedPrinter parse_printer(const json& item) {
   out.balance = item.at("balance").get<std::string>();
   out.violated_constraint = item.value("violated_constraint", "");
   out.balance_margin_mm = optional_number(item, "balance_margin_mm");
+  out.printed_balance_margin_mm = optional_number(item, "printed_balance_margin_mm");
   parse_bounds(item, &out);
   out.infeasibility_proven = item.value("infeasibility_proven", false);
   if (item.contains("sampling"))

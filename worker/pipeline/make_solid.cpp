@@ -24,7 +24,8 @@ Status make_solid(const PreparedSolid& prepared, const Skin& skin, const Printer
   s.solid_volume_mm3 = s.skin_volume_mm3 = s.total_volume_mm3 = solid.volume_mm3();
   s.ratio = 1.0;
   if (prepared.contact.hull.size() >= 3)
-    s.balance_margin_mm = signed_margin_mm(prepared.contact.hull, solid.centroid_mm().head<2>());
+    s.balance_margin_mm = s.printed_balance_margin_mm =
+        signed_margin_mm(prepared.contact.hull, solid.centroid_mm().head<2>());
   switch (decide_balance(options.balance, prepared.contact)) {
     case BalanceState::kEnforced:
       s.balance = "holds";

@@ -135,6 +135,7 @@ Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting
     setting.laps.lap("export");
     const double margin_mm =
         signed_margin_mm(setting.prepared.contact.hull, volume_centroid(merged->mesh).head<2>());
+    if (setting.prepared.contact.hull.size() >= 3) report->statistics.printed_balance_margin_mm = margin_mm;
     if (report->statistics.balance != "holds" || margin_mm >= 0)
       return std::optional<PrintableMesh>(std::move(merged).value());
     if (round == kMaxBalanceRounds) {
@@ -145,6 +146,7 @@ Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting
           "balance: the centre of gravity of the printed mesh stays {:.2f} mm outside the base contact",
           -margin_mm);
       fill_statistics(setting, report);
+      report->statistics.printed_balance_margin_mm.reset();  // nothing is exported
       return std::optional<PrintableMesh>();
     }
     for (HalfPlane& plane : problem.balance) plane.offset_mm -= kBalanceReserveMm - margin_mm;

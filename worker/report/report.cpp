@@ -205,6 +205,7 @@ json to_json(const PrinterReport& report) {
                          {"reused", report.warm_start->reused},
                          {"detail", report.warm_start->detail}};
   if (s.balance_margin_mm) out["balance_margin_mm"] = *s.balance_margin_mm;
+  if (s.printed_balance_margin_mm) out["printed_balance_margin_mm"] = *s.printed_balance_margin_mm;
   add_bounds(result, out);
   if (result.best_reachable_displacement_mm)
     out["best_reachable_displacement_mm"] = *result.best_reachable_displacement_mm;

@@ -55,6 +55,7 @@ struct Statistics {
   double max_displacement_mm = 0;
   std::string balance;                      // "holds", "not_standing", "off", "not_claimed"
   std::optional<double> balance_margin_mm;  // of the nominal centre of gravity inside the base contact
+  std::optional<double> printed_balance_margin_mm;  // of the exported mesh's
 };
 nlohmann::json to_json(const Statistics& statistics);
 

@@ -33,7 +33,7 @@ class CheckTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new test::TemporaryFolder;
-    JobRequest request = test::sample_job("egg", 60, 60, folder_->path());
+    JobRequest request = test::sample_job("egg", 36, 60, folder_->path());
     request.loads = {{"side", Place::kTop, {1, 0, 0}, 5}};
     RunContext context;
     auto outcomes = run_pipeline(request, honest(), PipelineObserver{}, context);
@@ -231,6 +231,11 @@ TEST_F(CheckTest, ACentreOfGravityOutsideTheBaseIsSeen) {
                 frame["skin_mass"]["centroid_mm"] = {500, 0, 10};
               }),
               Names("balance"));
+}
+
+TEST_F(CheckTest, AMarginOfThePrintThatTheMeshDoesNotHaveIsSeen) {
+  EXPECT_THAT(denied_report([](json& p) { p["printed_balance_margin_mm"] = 99; }), Names("balance"));
+  EXPECT_THAT(denied_report([](json& p) { p.erase("printed_balance_margin_mm"); }), Names("balance"));
 }
 
 TEST_F(CheckTest, ATraySmallerThanTheBodyIsSeen) {
