@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "worker/check/claims.h"
 
@@ -118,6 +119,30 @@ std::optional<double> verified(const ExportedFrame& frame, const ExportedProof& 
   return std::isfinite(least) ? std::optional(least) : std::nullopt;
 }
 
+Vector3d total_force(const ExportedLoadCase& load) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3d& force : load.force_n) sum += force;
+  return sum;
+}
+
+// That a bound for `given` says something about `made`: both answer the same question.
+bool same_terms(const ExportedFrame& given, const ExportedFrame& made) {
+  const auto terms = [](const ExportedFrame& f) {
+    return std::tuple(f.axial, f.tensile_modulus_mpa, f.shear_modulus_mpa, f.density_g_cm3,
+                      f.tensile_strength_mpa, f.shear_strength_mpa, f.slenderness, f.displacement_limit_mm,
+                      f.load_cases.size(), f.skin_mass_weight_n);
+  };
+  if (terms(given) != terms(made)) return false;
+  for (std::size_t k = 0; k < given.load_cases.size(); ++k) {
+    const ExportedLoadCase &a = given.load_cases[k], &b = made.load_cases[k];
+    const Vector3d force = total_force(a);
+    if (a.name != b.name || a.gravity != b.gravity ||
+        (force - total_force(b)).norm() > kVolumeTolerance * (1 + force.norm()))
+      return false;
+  }
+  return true;
+}
+
 void claim_certificate(const ExportedPrinter& result, Verdict* verdict) {
   if (!result.infeasibility_proven && !result.certificate) return;
   std::optional<double> value;
@@ -151,15 +176,14 @@ void claim_bound(const ExportedPrinter& result, const BoundFigures& f, Verdict* 
                              fmt::format("bound {:.6g} mm3, {} {:.6g} mm3, {:.3f} % above (reported {})",
                                          bound, f.of, f.volume_mm3, 100 * (f.volume_mm3 / bound - 1),
                                          f.gap ? fmt::format("{:.3f} %", 100 * *f.gap) : "none")});
-  if (!result.given) return;
   std::optional<double> value;
-  if (*f.proof && (*f.proof)->volume_weight == 1 &&
+  if (result.given && same_terms(*result.given, result.frame) && *f.proof && (*f.proof)->volume_weight == 1 &&
       (*f.proof)->removable_may_vanish == f.removable_may_vanish)
     value = verified(*result.given, **f.proof);
   verdict->claims.push_back(
       {fmt::format("{}, proven", f.name), value && bound <= *value + kProofTolerance * std::abs(*value),
        value ? fmt::format("no radii on the nodes and struts given make less than {:.6g} mm3", *value)
-             : "there is no proof that can be verified"});
+             : "there is no proof that can be verified for a frame of these loads, limits and material"});
 }
 
 }  // namespace

@@ -222,7 +222,14 @@ ExportedPrinter parse_solution(const json& item) {
   return figures;
 }
 
-// One of the printer's further meshes; files that make no claim of their own are passed over.
+// The frame that was optimised, and what proves the bounds on its volume.
+void read_given(const json& given, const json& proofs, ExportedPrinter* out) {
+  out->given = parse_frame(given, Radii::kNone);
+  out->bound_proof = parse_proof(proofs, "lower_bound_proof", *out->given);
+  out->relaxed_bound_proof = parse_proof(proofs, "relaxed_lower_bound_proof", *out->given);
+}
+
+// One of the printer's further files; files that make no claim of their own are passed over.
 Status read_listed(const std::filesystem::path& path, const json& item, ExportedPrinter* printer,
                    RunContext& context) {
   const std::string name = path.filename().string();
@@ -238,6 +245,11 @@ Status read_listed(const std::filesystem::path& path, const json& item, Exported
     auto package = read_package(path);
     if (!package) return package.error();
     (name == "skin-frame.3mf" ? printer->package : printer->beams) = std::move(package).value();
+  } else if (name == "initial-frame.json") {
+    auto initial = read_json(path);
+    if (!initial) return initial.error();
+    if (!printer->lower_bound_mm3 && !printer->relaxed_lower_bound_mm3) return ok_status();
+    read_given(*initial, *initial, printer);
   }
   return ok_status();
 }
@@ -275,11 +287,7 @@ Result<Exported> read_exported(const std::filesystem::path& directory, RunContex
       if (!frame) return frame.error();
       solution.frame = parse_frame(*frame);
       solution.certificate = parse_proof(*frame, "certificate", solution.frame);
-      if (frame->contains("given")) {
-        solution.given = parse_frame(frame->at("given"), Radii::kNone);
-        solution.bound_proof = parse_proof(*frame, "lower_bound_proof", *solution.given);
-        solution.relaxed_bound_proof = parse_proof(*frame, "relaxed_lower_bound_proof", *solution.given);
-      }
+      if (frame->contains("given")) read_given(frame->at("given"), *frame, &solution);
       return Exported{{}, std::move(solution)};
     }
     for (const json& item : report->at("printers")) {

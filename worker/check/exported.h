@@ -66,11 +66,12 @@ struct ExportedPrinter {
   double printed_volume_mm3 = 0, printed_ratio = 0, weight_g = 0;
   double size_volume_mm3 = 0, topology_volume_mm3 = 0, geometry_volume_mm3 = 0;
   double max_displacement_mm = 0, max_axial_ratio = 0, max_shear_ratio = 0, min_radius_mm = 0;
-  std::optional<double> balance_margin_mm, printed_balance_margin_mm, lower_bound_mm3, best_reachable_displacement_mm;
+  std::optional<double> balance_margin_mm, printed_balance_margin_mm, lower_bound_mm3,
+      best_reachable_displacement_mm;
   std::optional<double> gap, relaxed_lower_bound_mm3, relaxed_gap;
   bool infeasibility_proven = false;         // as the report says
   std::optional<ExportedProof> certificate;  // of `frame`
-  // Of a frame problem: what was given, and what proves the bounds for it.
+  // The frame that the optimiser was given, and what proves the bounds for it.
   std::optional<ExportedFrame> given;
   std::optional<ExportedProof> bound_proof, relaxed_bound_proof;
   std::string balance, violated_constraint;

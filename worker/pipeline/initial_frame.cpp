@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "worker/problem/problem_file.h"
+#include "worker/problem/proof_json.h"
 
 namespace skinframe {
 namespace {
@@ -143,6 +144,7 @@ json initial_frame_json(const FrameProblem& posed, const SampledFrame& sampled, 
                           {"pieces", sampled.pieces},
                           {"warnings", sampled.warnings}};
   document["reduced"] = result != nullptr ? reduced_json(*result) : json(nullptr);
+  if (result != nullptr) add_bound_proofs(*result, posed, document);
   return document;
 }
 

@@ -45,7 +45,8 @@ struct InitialFrame {
 // program's version. Not the loads, nor the finger rule's edge: see still_fine_enough in earlier_frame.h.
 std::string sampling_key(const Skin& skin, const FrameOptions& options, const RunContext& context);
 
-// result: none when nothing was optimised or nothing feasible found.
+// result: none when nothing was optimised or nothing feasible found. Its lower bounds are of `posed`, and so
+// are their proofs (proof_json.h), which stand beside it.
 nlohmann::json initial_frame_json(const FrameProblem& posed, const SampledFrame& sampled,
                                   const std::string& density, const std::string& key,
                                   const OptimizeResult* result);

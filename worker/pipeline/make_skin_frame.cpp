@@ -121,7 +121,8 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
       report.warm_start->detail = "its reduced frame does not fit: " + again.error().message;
     }
   }
-  auto merged = solve_and_merge(setting, posed->problem, &report, context);
+  FrameProblem problem = posed->problem;
+  auto merged = solve_and_merge(setting, &problem, &report, context);
   if (!merged) return merged.error();
   if (report.warm_start && !report.warm_start->detail.empty())
     report.warnings.push_back(
@@ -135,8 +136,8 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
   if (auto written = write_json(folder / "frame.json", frame_json); !written) return written.error();
   report.files.push_back("frame.json");
   const bool optimised = report.reason == Reason::kNone && !job.options.no_optimize;
-  auto initial = initial_frame_json(posed->problem, *sampled, report.sampling->density, key,
-                                    optimised ? &result : nullptr);
+  auto initial =
+      initial_frame_json(problem, *sampled, report.sampling->density, key, optimised ? &result : nullptr);
   if (auto written = write_json(folder / "initial-frame.json", initial); !written) return written.error();
   report.files.push_back("initial-frame.json");
   if (!merged.value()) return report;

@@ -118,10 +118,10 @@ Status solve_frame(const FrameProblem& problem, const SolveSetting& setting, Pri
 
 }  // namespace
 
-Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting, FrameProblem problem,
+Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting, FrameProblem* problem,
                                                      PrinterReport* report, RunContext& context) {
   for (int round = 0;; ++round) {
-    auto solved = solve_frame(problem, setting, report, context);
+    auto solved = solve_frame(*problem, setting, report, context);
     if (!solved) return solved.error();
     setting.laps.lap("optimize");
     fill_statistics(setting, report);
@@ -149,7 +149,7 @@ Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting
       report->statistics.printed_balance_margin_mm.reset();  // nothing is exported
       return std::optional<PrintableMesh>();
     }
-    for (HalfPlane& plane : problem.balance) plane.offset_mm -= kBalanceReserveMm - margin_mm;
+    for (HalfPlane& plane : problem->balance) plane.offset_mm -= kBalanceReserveMm - margin_mm;
   }
 }
 

@@ -33,7 +33,8 @@ struct SolveSetting {
 };
 
 // Fills the report's optimised frame, statistics, termination and reason. No mesh when the job is infeasible.
-Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting, FrameProblem problem,
+// `problem` is left as it was solved last: its balance half planes drawn in as the print asked for.
+Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting, FrameProblem* problem,
                                                      PrinterReport* report, RunContext& context);
 
 }  // namespace skinframe

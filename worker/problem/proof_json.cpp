@@ -42,4 +42,12 @@ json bound_proof_json(const FrameProblem& problem, const DualProof& proof, bool 
   return proof_json(proof, removable_may_vanish, dual_value(problem, box, proof));
 }
 
+void add_bound_proofs(const OptimizeResult& result, const FrameProblem& given, json& document) {
+  const auto proof = [&](const std::optional<DualProof>& of, bool removable_may_vanish) {
+    return of ? bound_proof_json(given, *of, removable_may_vanish) : json(nullptr);
+  };
+  document["lower_bound_proof"] = proof(result.lower_bound_proof, false);
+  document["relaxed_lower_bound_proof"] = proof(result.relaxed_lower_bound_proof, true);
+}
+
 }  // namespace skinframe

@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "worker/optimize/infeasibility_certificate.h"
+#include "worker/optimize/optimize_frame.h"
 
 namespace skinframe {
 
@@ -22,5 +23,9 @@ nlohmann::json certificate_json(const InfeasibilityCertificate& certificate);
 // Of a lower bound on the volume of `problem`; "value" is what dual_value says.
 nlohmann::json bound_proof_json(const FrameProblem& problem, const DualProof& proof,
                                 bool removable_may_vanish);
+
+// "lower_bound_proof" and "relaxed_lower_bound_proof" of `result`, each null where there is none; `given` is
+// the problem that was optimised.
+void add_bound_proofs(const OptimizeResult& result, const FrameProblem& given, nlohmann::json& document);
 
 }  // namespace skinframe

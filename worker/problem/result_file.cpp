@@ -57,11 +57,7 @@ void add_bounds(const OptimizeResult& result, const FrameProblem& given, json& d
   document["relaxed_lower_bound_mm3"] = optional_json(result.relaxed_lower_bound_mm3);
   document["relaxed_gap"] = optional_json(result.relaxed_gap);
   document["certificate"] = result.certificate ? certificate_json(*result.certificate) : json(nullptr);
-  const auto proof = [&](const std::optional<DualProof>& of, bool removable_may_vanish) {
-    return of ? bound_proof_json(given, *of, removable_may_vanish) : json(nullptr);
-  };
-  document["lower_bound_proof"] = proof(result.lower_bound_proof, false);
-  document["relaxed_lower_bound_proof"] = proof(result.relaxed_lower_bound_proof, true);
+  add_bound_proofs(result, given, document);
   if (result.lower_bound_proof) document["given"] = to_json(given, {}, {});
 }
 

@@ -238,6 +238,22 @@ TEST_F(CheckTest, AMarginOfThePrintThatTheMeshDoesNotHaveIsSeen) {
   EXPECT_THAT(denied_report([](json& p) { p.erase("printed_balance_margin_mm"); }), Names("balance"));
 }
 
+TEST_F(CheckTest, ALowerBoundIsVerifiedForTheFrameThatWasOptimised) {
+  const json honest_report = read_json(honest() / "report.json");
+  const double bound = honest_report["printers"][0]["lower_bound_mm3"];
+  const char* proven = "lower bound of the sized volume, proven";
+  EXPECT_THAT(denied_report([&](json& p) { p["lower_bound_mm3"] = 1.0001 * bound; }), Names(proven));
+  const auto denied_initial = [&](const std::function<void(json&)>& lie) {
+    return denied([&](const fs::path& copy) {
+      json initial = read_json(copy / kPrinter / "initial-frame.json");
+      lie(initial);
+      write_json(copy / kPrinter / "initial-frame.json", initial);
+    });
+  };
+  EXPECT_THAT(denied_initial([](json& f) { f["lower_bound_proof"] = nullptr; }), Names(proven));
+  EXPECT_THAT(denied_initial([](json& f) { f["displacement_limit_mm"] = 0.01; }), Names(proven));
+}
+
 TEST_F(CheckTest, ATraySmallerThanTheBodyIsSeen) {
   EXPECT_THAT(denied_report([](json& p) { p["profile"]["tray_mm"] = {20, 20, 20}; }), Names("fits the tray"));
 }
