@@ -166,7 +166,9 @@ Decision decide_heartbeat(const JobRecord& record, const v1::HeartbeatRequest& r
                           const AttemptPolicy& policy) {
   if (!holds_lease(record, request.fencing_token())) return stale_token(record, request.fencing_token());
   const bool news = request.progress_size() > 0 || request.printers_size() > 0;
-  const bool fresh = now < record.lease.expires - policy.lease + policy.heartbeat;
+  // A lease that lasts longer than one can be given is of before the clock was set back: not fresh.
+  const Milliseconds left = record.lease.expires - now;
+  const bool fresh = policy.lease - policy.heartbeat < left && left <= policy.lease;
   if (!news && (fresh || must_stop(record, now))) return std::nullopt;
   Change change{record, {}};
   if (!must_stop(record, now)) change.record.lease.expires = now + policy.lease;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/leases/lease_reaper.h"
 
+#include <algorithm>
+
 #include "server/jobs/decisions.h"
 
 namespace skinframe::server {
@@ -12,6 +14,7 @@ LeaseReaper::LeaseReaper(JobStore& store, const AttemptPolicy& policy, Time serv
     : store_(store), policy_(policy), patient_until_(server_start + policy.lease) {}
 
 absl::Status LeaseReaper::run_once(Time now) {
+  patient_until_ = std::min(patient_until_, now + policy_.lease);  // the clock may have been set back
   if (now < patient_until_) return absl::OkStatus();
   const auto expired = store_.expired_leases(now, kMostAtOnce);
   if (!expired.ok()) return expired.status();

@@ -21,7 +21,7 @@ class LeaseReaper final : public Duty {
  private:
   JobStore& store_;
   const AttemptPolicy policy_;
-  const Time patient_until_;
+  Time patient_until_;
   JobSweep sweep_{name()};
 };
 
