@@ -86,6 +86,12 @@ void FaultFarm::start_worker(int index) {
   worker_logs_.push_back(log.string() + ".err");
 }
 
+void FaultFarm::add_worker() {
+  worker_addresses_.push_back(addresses_[0]);
+  workers_.emplace_back();
+  start_worker(workers() - 1);
+}
+
 bool FaultFarm::kill_server(int index) {
   const bool killed = kill_and_wait(servers_[at(index)].get());
   kills_.servers += killed ? 1 : 0;

@@ -42,6 +42,7 @@ class FaultFarm {
 
   void start_server(int index);
   void start_worker(int index);
+  void add_worker();  // one more, of the first server
   // SIGKILL, waited for, counted. False: there was nothing to kill.
   bool kill_server(int index);
   bool kill_worker(int index);

@@ -113,6 +113,7 @@ std::string Witness::upload(const std::string& content) {
 std::string Witness::submit(const v1::JobSpec& spec) {
   v1::SubmitJobRequest request;
   *request.mutable_spec() = spec;
+  request.set_no_reuse(true);  // each is to be run
   {
     const std::lock_guard lock(mutex_);
     request.set_request_id("witness-" + std::to_string(requests_made_++));
@@ -123,11 +124,15 @@ std::string Witness::submit(const v1::JobSpec& spec) {
   });
   if (!status.ok()) throw std::runtime_error("submit: " + status.error_message());
   const std::string id = response.job().job_id();
-  const std::lock_guard lock(mutex_);
-  requests_[request.request_id()] = id;
-  judges_[id];
-  watches_.emplace_back([this, id] { watch(end_.get_token(), id); });
+  watch_also(id);
   return id;
+}
+
+void Witness::watch_also(const std::string& job_id) {
+  const std::lock_guard lock(mutex_);
+  ++acknowledged_;
+  judges_[job_id];
+  watches_.emplace_back([this, job_id] { watch(end_.get_token(), job_id); });
 }
 
 void Witness::watch(std::stop_token stop, const std::string& job_id) {
@@ -218,16 +223,16 @@ Verdict Witness::judge(const std::vector<std::filesystem::path>& worker_logs, co
         acceptances[found[1]].insert(std::stoi(found[2]));
   }
   std::map<std::string, JobJudge> judges;
-  std::map<std::string, std::string> requests;
+  std::size_t acknowledged = 0;
   {
     const std::lock_guard lock(mutex_);
     judges = judges_;
-    requests = requests_;
+    acknowledged = acknowledged_;
     verdict.events = events_;
     verdict.reconnections = reconnections_;
   }
   verdict.jobs = static_cast<int>(judges.size());
-  if (requests.size() != judges.size())
+  if (acknowledged != judges.size())
     verdict.faults.push_back("two submissions were answered with the same job");
   std::set<std::string> sound;  // files that were looked at
   for (auto& [id, judge] : judges) {

@@ -42,6 +42,8 @@ class Witness {
   std::string upload(const std::string& content);  // its SHA-256
   std::string submit(const v1::JobSpec& spec);     // the job's id; a watch of it begins
 
+  void watch_also(const std::string& job_id);  // one that was submitted past the witness
+
   int submitted() const;
   int running_or_queued() const;
   // Waits until the condition holds, asked after each event; false when it did not within the time.
@@ -76,10 +78,10 @@ class Witness {
   mutable std::mutex mutex_;
   std::condition_variable_any news_;
   std::map<std::string, JobJudge> judges_;  // by job id
-  std::map<std::string, std::string> requests_;
   std::int64_t events_ = 0;
   std::int64_t reconnections_ = 0;
   int requests_made_ = 0;
+  std::size_t acknowledged_ = 0;  // each with another request id, so each another job
   std::vector<std::jthread> watches_;
 };
 
