@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The saddle point of a convex relaxation by a primal-dual interior point (Nocedal and Wright 2006, chapter
-// 19). The Hessian in A is diagonal: each A_j is eliminated within its strut, and what is left is symmetric
-// positive definite, with the pattern of K, bordered by one row a term. One Cholesky factorisation an
-// iteration.
+// 19), with Mehrotra's choice of the barrier. Roles: what the problem is worth at a point
+// (relaxation_values.h), the step (relaxation_system.h), how far it goes (relaxation_iterate.h).
 //
 // Any iterate's fields and multipliers prove something (see dual_proof.h): nothing depends on convergence but
 // how much.
