@@ -4,127 +4,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <system_error>
 #include <utility>
+
+#include "worker/problem/json_bounds.h"
+#include "worker/problem/json_field.h"
 
 namespace skinframe {
 namespace {
 
 using nlohmann::json;
-
-// Thrown and caught within this file only.
-struct FieldError {
-  Error error;
-};
-
-[[noreturn]] void refuse(const std::string& field, const std::string& what) {
-  throw FieldError{invalid_input(fmt::format("{}: {}", field, what))};
-}
-
-// A JSON value and where it stands, so that whatever is wrong with it can be named.
-class Field {
- public:
-  Field(const json& value, std::string path) : value_(&value), path_(std::move(path)) {}
-
-  const std::string& path() const { return path_; }
-  bool has(const char* key) const { return value_->contains(key) && !(*value_)[key].is_null(); }
-  Field at(const char* key) const {
-    if (!value_->is_object()) refuse(path_.empty() ? "problem" : path_, "must be an object");
-    if (!value_->contains(key)) refuse(child(key), "is missing");
-    return {(*value_)[key], child(key)};
-  }
-  Field at(std::size_t index) const { return {(*value_)[index], fmt::format("{}[{}]", path_, index)}; }
-  std::size_t size(std::size_t most) const {
-    if (!value_->is_array()) refuse(path_, "must be a list");
-    if (value_->size() > most)
-      refuse(path_, fmt::format("{} entries, at most {} are taken", value_->size(), most));
-    return value_->size();
-  }
-
-  double number() const {
-    if (!value_->is_number()) refuse(path_, "must be a number");
-    const double number = value_->get<double>();
-    if (!std::isfinite(number)) refuse(path_, "must be finite");
-    return number;
-  }
-  std::optional<double> optional_number(const char* key) const {
-    return has(key) ? std::optional(at(key).number()) : std::nullopt;
-  }
-  bool boolean() const {
-    if (!value_->is_boolean()) refuse(path_, "must be true or false");
-    return value_->get<bool>();
-  }
-  std::string text() const {
-    if (!value_->is_string()) refuse(path_, "must be a string");
-    return value_->get<std::string>();
-  }
-  int node(std::size_t nodes) const {
-    if (!value_->is_number_integer()) refuse(path_, "must be a whole number");
-    const bool negative = !value_->is_number_unsigned() && value_->get<std::int64_t>() < 0;
-    if (!negative && value_->get<std::uint64_t>() < nodes) return value_->get<int>();
-    refuse(path_, fmt::format("{} is not a node (0..{})", value_->dump(), nodes - 1));
-  }
-  template <int N>
-  Eigen::Matrix<double, N, 1> vector() const {
-    if (!value_->is_array() || value_->size() != N)
-      refuse(path_, fmt::format("must be a list of {} numbers", N));
-    Eigen::Matrix<double, N, 1> v;
-    for (int i = 0; i < N; ++i) v[i] = at(static_cast<std::size_t>(i)).number();
-    return v;
-  }
-
- private:
-  std::string child(const char* key) const { return path_.empty() ? key : path_ + "." + key; }
-  const json* value_;
-  std::string path_;
-};
-
-// Reads a JSON text through without keeping any of it.
-class JsonBounds : public nlohmann::json_sax<json> {
- public:
-  const std::string& refusal() const { return refusal_; }
-
-  bool null() override { return one(); }
-  bool boolean(bool) override { return one(); }
-  bool number_integer(number_integer_t) override { return one(); }
-  bool number_unsigned(number_unsigned_t) override { return one(); }
-  bool number_float(number_float_t, const string_t&) override { return one(); }
-  bool string(string_t&) override { return one(); }
-  bool binary(binary_t&) override { return one(); }
-  bool key(string_t&) override { return one(); }
-  bool start_object(std::size_t) override { return open(); }
-  bool start_array(std::size_t) override { return open(); }
-  bool end_object() override { return close(); }
-  bool end_array() override { return close(); }
-  bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception& e) override {
-    refusal_ = fmt::format("not valid JSON ({})", e.what());
-    return false;
-  }
-
- private:
-  bool one() {
-    if (++values_ <= kMaxProblemValues) return true;
-    refusal_ = fmt::format("more than {} values", kMaxProblemValues);
-    return false;
-  }
-  bool open() {
-    if (++depth_ > kMaxProblemDepth) {
-      refusal_ = fmt::format("nested more than {} deep", kMaxProblemDepth);
-      return false;
-    }
-    return one();
-  }
-  bool close() {
-    --depth_;
-    return true;
-  }
-
-  std::size_t values_ = 0;
-  int depth_ = 0;
-  std::string refusal_;
-};
 
 ElementModel read_element(const Field& field) {
   const std::string name = field.text();
@@ -325,8 +215,8 @@ Result<ProblemFile> read_problem(const std::filesystem::path& path, const std::s
     return invalid_input(fmt::format("{}: {} bytes, at most {} are read", name, bytes, kMaxProblemFileBytes));
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return io_error(fmt::format("{}: cannot be opened", name));
-  JsonBounds bounds;
-  if (!json::sax_parse(stream, &bounds)) return invalid_input(fmt::format("{}: {}", name, bounds.refusal()));
+  if (const Status bounded = check_json_bounds(stream, {kMaxProblemValues, kMaxProblemDepth}); !bounded)
+    return Error{bounded.error().kind, fmt::format("{}: {}", name, bounded.error().message)};
   stream.clear();
   stream.seekg(0);
   try {
