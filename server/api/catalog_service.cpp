@@ -8,7 +8,8 @@ namespace skinframe::server {
 grpc::ServerUnaryReactor* CatalogService::ListPrinters(grpc::CallbackServerContext* context,
                                                        const v1::ListPrintersRequest*,
                                                        v1::ListPrintersResponse* response) {
-  for (const v1::PrinterProfile& printer : catalog_.printers()) *response->add_printers() = printer;
+  const auto catalog = catalog_.current();
+  for (const v1::PrinterProfile& printer : catalog->printers()) *response->add_printers() = printer;
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   reactor->Finish(grpc::Status::OK);
   return reactor;
@@ -17,7 +18,8 @@ grpc::ServerUnaryReactor* CatalogService::ListPrinters(grpc::CallbackServerConte
 grpc::ServerUnaryReactor* CatalogService::ListMaterials(grpc::CallbackServerContext* context,
                                                         const v1::ListMaterialsRequest*,
                                                         v1::ListMaterialsResponse* response) {
-  for (const v1::MaterialProfile& material : catalog_.materials()) *response->add_materials() = material;
+  const auto catalog = catalog_.current();
+  for (const v1::MaterialProfile& material : catalog->materials()) *response->add_materials() = material;
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
   reactor->Finish(grpc::Status::OK);
   return reactor;

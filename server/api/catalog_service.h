@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// skinframe.v1.CatalogService. The catalog is in memory and never changes: answered on the spot.
+// skinframe.v1.CatalogService. The catalogue is in memory: answered on the spot.
 #pragma once
 
-#include "server/catalog/catalog.h"
+#include "server/catalog/live_catalog.h"
 #include "skinframe/v1/catalog.grpc.pb.h"
 
 namespace skinframe::server {
 
 class CatalogService final : public v1::CatalogService::CallbackService {
  public:
-  explicit CatalogService(const Catalog& catalog) : catalog_(catalog) {}
+  explicit CatalogService(const LiveCatalog& catalog) : catalog_(catalog) {}
 
   grpc::ServerUnaryReactor* ListPrinters(grpc::CallbackServerContext* context,
                                          const v1::ListPrintersRequest* request,
@@ -19,7 +19,7 @@ class CatalogService final : public v1::CatalogService::CallbackService {
                                           v1::ListMaterialsResponse* response) override;
 
  private:
-  const Catalog& catalog_;
+  const LiveCatalog& catalog_;
 };
 
 }  // namespace skinframe::server

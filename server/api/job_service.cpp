@@ -41,7 +41,8 @@ grpc::ServerUnaryReactor* JobService::SubmitJob(grpc::CallbackServerContext* con
 absl::Status JobService::submit(grpc::CallbackServerContext& context, const v1::SubmitJobRequest& request,
                                 v1::SubmitJobResponse& response) {
   if (auto status = validate_request_id(request.request_id()); !status.ok()) return status;
-  if (auto status = validate_spec(request.spec(), parts_.catalog); !status.ok()) return status;
+  const auto catalog = parts_.catalog.current();  // one for the check and the copy
+  if (auto status = validate_spec(request.spec(), *catalog); !status.ok()) return status;
   const auto input = parts_.artifacts.stat(input_sha256(request.spec()));
   if (!input.ok()) return input.status();
   if (!input->complete) {
@@ -49,7 +50,7 @@ absl::Status JobService::submit(grpc::CallbackServerContext& context, const v1::
                                                      input_word(request.spec()),
                                                      input_sha256(request.spec())));
   }
-  JobRecord record = new_record(request);
+  JobRecord record = new_record(request, *catalog);
   if (auto status = take_warm_start(record); !status.ok()) return status;
   if (request.validate_only()) {
     for (std::string& check : checks_that_hold(request.spec())) response.add_checks(std::move(check));
@@ -89,18 +90,18 @@ absl::Status JobService::take_warm_start(JobRecord& record) {
   return absl::OkStatus();
 }
 
-JobRecord JobService::new_record(const v1::SubmitJobRequest& request) {
+JobRecord JobService::new_record(const v1::SubmitJobRequest& request, const Catalog& catalog) {
   JobRecord record;
   record.request_id = request.request_id();
   record.spec_digest = digest_of(request.spec());
   record.job.set_job_id(parts_.ids.next());
   *record.job.mutable_spec() = request.spec();
   for (const v1::PrinterRequest& wanted : request.spec().printers()) {  // validated: all are known
-    const v1::PrinterProfile& printer = *parts_.catalog.find_printer(wanted.printer_id());
+    const v1::PrinterProfile& printer = *catalog.find_printer(wanted.printer_id());
     const std::string& material_id =
         wanted.material_id().empty() ? printer.default_material_id() : wanted.material_id();
     record.printers.push_back(printer);
-    record.materials.push_back(*parts_.catalog.find_material(material_id));
+    record.materials.push_back(*catalog.find_material(material_id));
   }
   return record;
 }

@@ -30,7 +30,7 @@ class JobService final : public v1::JobService::CallbackService {
   absl::Status submit(grpc::CallbackServerContext& context, const v1::SubmitJobRequest& request,
                       v1::SubmitJobResponse& response);
   absl::Status list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
-  JobRecord new_record(const v1::SubmitJobRequest& request);
+  JobRecord new_record(const v1::SubmitJobRequest& request, const Catalog& catalog);
   absl::Status take_warm_start(JobRecord& record);
 
   Parts parts_;

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "server/artifacts/artifact_store.h"
-#include "server/catalog/catalog.h"
+#include "server/catalog/live_catalog.h"
 #include "server/events/watch_hub.h"
 #include "server/executor/executor.h"
 #include "server/jobs/attempt_policy.h"
@@ -19,7 +19,7 @@ namespace skinframe::server {
 struct Parts {
   JobStore& store;
   ArtifactStore& artifacts;
-  const Catalog& catalog;
+  const LiveCatalog& catalog;
   WatchHub& hub;
   LeaseDesk& desk;
   Executor& executor;

@@ -64,6 +64,24 @@ absl::Status check_input(const v1::JobSpec& spec) {
   return absl::OkStatus();
 }
 
+// Whether the profiles say all that a job needs: null in a profile file means "not known".
+absl::Status check_known(const v1::PrinterRequest& wanted, const Catalog& catalog) {
+  const v1::PrinterProfile& printer = *catalog.find_printer(wanted.printer_id());
+  constexpr char kRemedy[] =
+      "put a profile of that id with the number and its source into the server's --profiles folder";
+  if (const std::string missing = missing_for_a_job(printer); !missing.empty())
+    return invalid("printer \"{}\": a job needs {}, which its profile does not know; {}", printer.id(),
+                   missing, kRemedy);
+  const std::string& id = wanted.material_id().empty() ? printer.default_material_id() : wanted.material_id();
+  if (id.empty())
+    return invalid("printer \"{}\" has no default material; name one: {}", printer.id(),
+                   catalog.material_ids());
+  if (const std::string missing = missing_for_a_job(*catalog.find_material(id)); !missing.empty())
+    return invalid("material \"{}\": a job needs {}, which its profile does not know; {}", id, missing,
+                   kRemedy);
+  return absl::OkStatus();
+}
+
 absl::Status check_printers(const v1::JobSpec& spec, const Catalog& catalog) {
   if (spec.printers_size() < 1 || spec.printers_size() > kMostPrinters) {
     return invalid("spec.printers has {} entries, must have 1 .. {}; known: {}", spec.printers_size(),
@@ -80,6 +98,7 @@ absl::Status check_printers(const v1::JobSpec& spec, const Catalog& catalog) {
     if (!seen.insert(printer.printer_id()).second) {
       return invalid("printer \"{}\" is named twice", printer.printer_id());
     }
+    if (auto status = check_known(printer, catalog); !status.ok()) return status;
   }
   return absl::OkStatus();
 }

@@ -18,11 +18,12 @@ namespace {
 using namespace skinframe::server;
 
 // Before any thread starts, so that all threads inherit it and only sigwait() sees the signals.
-sigset_t block_stop_signals() {
+sigset_t block_signals() {
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGTERM);
   sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   signal(SIGPIPE, SIG_IGN);
   return signals;
@@ -43,7 +44,7 @@ int fail(const absl::Status& status, int exit_code) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const sigset_t signals = block_stop_signals();
+  const sigset_t signals = block_signals();
   const auto parsed = parse_command_line(argc, argv);
   if (const auto* end = std::get_if<EarlyEnd>(&parsed)) {
     std::fputs(end->text.c_str(), end->exit_code == 0 ? stdout : stderr);
@@ -65,7 +66,7 @@ int main(int argc, char** argv) {
     spdlog::warn("without TLS: whoever can reach {} can read and submit jobs", (*server)->address());
   }
   int signal_number = 0;
-  sigwait(&signals, &signal_number);
+  while (sigwait(&signals, &signal_number) == 0 && signal_number == SIGHUP) (*server)->reload_profiles();
   spdlog::info("stopping on {}", signal_number == SIGINT ? "SIGINT" : "SIGTERM");
   (*server)->stop();
   spdlog::info("stopped");

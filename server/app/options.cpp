@@ -21,9 +21,12 @@ constexpr char kExamples[] =
     "  skinframe-server --data DIR --store postgresql://skinframe@db/skinframe --artifacts "
     "/mnt/farm/artifacts\n"
     "      one of several servers on one database; PGPASSWORD or ~/.pgpass hold its password\n"
+    "  skinframe-server --data DIR --profiles /etc/skinframe/profiles\n"
+    "      with printers and materials of your own (server/catalog/README.md gives the format)\n"
     "  skinframe-server --data DIR --listen 127.0.0.1:0 --port-file DIR/port\n"
     "      on a free port, written to the file once it listens\n"
-    "\nExit codes: 0 stopped by SIGTERM or SIGINT; 1 cannot run (port taken, folder in use or not writable); "
+    "\nExit codes: 0 stopped by SIGTERM or SIGINT; 1 cannot run (port taken, folder in use or not writable, "
+    "bad profile); "
     "2 wrong "
     "usage.\n";
 
@@ -117,6 +120,10 @@ std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* c
   app.add_option("--keep-jobs-days", options.keep_jobs_days,
                  "an ended job is forgotten after so many days, its files a day later; 0: never")
       ->capture_default_str();
+  app.add_option(
+      "--profiles", options.profiles,
+      "folder of printer and material profiles (*.json) beside the built-in ones; read again when it "
+      "changes and on SIGHUP");
   app.add_option("--port-file", options.port_file, "written with host:port once the server listens");
   try {
     app.parse(argc, argv);

@@ -23,6 +23,7 @@ struct ServerOptions {
   AttemptPolicy policy;
   std::int64_t queue_limit = 10'000;  // 1 .. 1,000,000 queued jobs
   int keep_jobs_days = 30;            // after their end; 0: for ever; at most 3650
+  std::filesystem::path profiles;     // folder of printers and materials; empty: the built-in ones alone
   std::filesystem::path port_file;    // empty: none
 
   bool store_is_postgres() const;

@@ -20,6 +20,7 @@
 #include "server/app/commit_bell.h"
 #include "server/app/data_folder.h"
 #include "server/app/listen_address.h"
+#include "server/app/profile_watch.h"
 #include "server/leases/deadline_watch.h"
 #include "server/leases/duty_runner.h"
 #include "server/leases/lease_reaper.h"
@@ -40,6 +41,7 @@ constexpr Milliseconds kDay{24 * 3'600'000};
 constexpr Milliseconds kRetentionEvery{60'000};
 constexpr Milliseconds kUnused = kDay;  // an upload waits so long for its submission
 constexpr Milliseconds kCleanEvery{3'600'000};
+constexpr Milliseconds kProfilesEvery{1'000};
 constexpr int kDatabaseSessions = 16;
 constexpr std::chrono::seconds kStopPatience{1};  // for calls under way; uploads resume, the rest takes less
 constexpr int kLargestMessageBytes = 4 << 20;
@@ -81,12 +83,12 @@ absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> credentials(const Serve
 
 // In the order in which each needs those before it.
 struct Server::Rooms {
-  Rooms(DataFolder locked, const ServerOptions& options)
-      : folder(std::move(locked)), policy(options.policy) {}
+  Rooms(DataFolder locked, const ServerOptions& options, Catalog known)
+      : folder(std::move(locked)), policy(options.policy), catalog(std::move(known)) {}
 
   DataFolder folder;
   AttemptPolicy policy;
-  Catalog catalog = built_in_catalog();
+  LiveCatalog catalog;
   WatchHub hub{kMostWatchers};
   CommitBell bell{hub};
   std::unique_ptr<ArtifactStore> artifacts;
@@ -98,6 +100,7 @@ struct Server::Rooms {
   std::optional<ProgressFollower> follower;  // where other servers share the store
   std::optional<JobRetention> retention;
   std::optional<ArtifactCleaner> cleaner;
+  std::optional<ProfileWatch> profile_watch;  // where the operator has a folder
   std::optional<DutyRunner> duties;
   std::optional<JobService> jobs;
   std::optional<ArtifactService> files;
@@ -137,6 +140,8 @@ absl::Status Server::Rooms::open(const ServerOptions& options, const Clock& cloc
   if (options.keep_jobs_days > 0)
     all.push_back(&retention.emplace(*store, options.keep_jobs_days * kDay, kRetentionEvery));
   all.push_back(&cleaner.emplace(*store, *artifacts, kUnused, kCleanEvery));
+  if (!options.profiles.empty())
+    all.push_back(&profile_watch.emplace(options.profiles, catalog, kProfilesEvery));
   duties.emplace(clock, all, kDutyPause);
   return absl::OkStatus();
 }
@@ -171,7 +176,10 @@ absl::StatusOr<std::unique_ptr<Server>> Server::start(const ServerOptions& optio
   if (auto status = options.validate(); !status.ok()) return status;
   auto folder = DataFolder::lock(options.data);
   if (!folder.ok()) return folder.status();
-  std::unique_ptr<Server> server(new Server(std::make_unique<Rooms>(*std::move(folder), options)));
+  auto known = options.profiles.empty() ? built_in_catalog() : load_catalog(options.profiles);
+  if (!known.ok()) return known.status();
+  std::unique_ptr<Server> server(
+      new Server(std::make_unique<Rooms>(*std::move(folder), options, *std::move(known))));
   if (auto status = server->rooms_->open(options, clock, ids); !status.ok()) return status;
   if (auto status = server->rooms_->listen(options); !status.ok()) return status;
   if (!options.port_file.empty()) {
@@ -186,6 +194,10 @@ Server::Server(std::unique_ptr<Rooms> rooms) : rooms_(std::move(rooms)) {}
 Server::~Server() { stop(); }
 
 const std::string& Server::address() const { return rooms_->address; }
+
+void Server::reload_profiles() {
+  if (rooms_->profile_watch) rooms_->profile_watch->reload();
+}
 
 void Server::stop() {
   rooms_->duties.reset();

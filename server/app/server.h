@@ -24,6 +24,9 @@ class Server {
 
   const std::string& address() const;  // host:port as bound
 
+  // Reads the profile folder again, if there is one: within a tenth of a second. A bad file changes nothing.
+  void reload_profiles();
+
   // Takes no new calls; ends watches and waiting leases with UNAVAILABLE; gives other calls a second. What
   // was acknowledged is durable with or without it.
   void stop();

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/catalog/catalog.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace skinframe::server {
 namespace {
-
-constexpr char kSource[] = "Wang et al. 2013, ACM Trans. Graph. 32(6), Table 1";
 
 template <class Profiles>
 void sort_by_id(Profiles& profiles) {
@@ -19,72 +19,15 @@ auto find_by_id(const Profiles& profiles, std::string_view id) {
   return at == profiles.end() ? nullptr : &*at;
 }
 
+std::string joined(const std::vector<std::string>& words) {
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
 template <class Profiles>
 std::string joined_ids(const Profiles& profiles) {
-  std::string ids;
-  for (const auto& profile : profiles) {
-    if (!ids.empty()) ids += ", ";
-    ids += profile.id();
-  }
-  return ids;
-}
-
-v1::PrinterProfile sinterstation_hiq() {
-  v1::PrinterProfile printer;
-  printer.set_id("sinterstation-hiq");
-  printer.set_display_name("Sinterstation HiQ SLS");
-  printer.set_process(v1::PRINT_PROCESS_POWDER);
-  printer.set_min_radius_mm(0.5);
-  printer.set_tray_x_mm(457);
-  printer.set_tray_y_mm(380);
-  printer.set_tray_z_mm(330);
-  printer.set_default_material_id("pa");
-  printer.set_max_internal_radius_mm(5);
-  printer.set_source(kSource);
-  return printer;
-}
-
-v1::PrinterProfile makerbot_replicator_2() {
-  v1::PrinterProfile printer;
-  printer.set_id("makerbot-replicator-2");
-  printer.set_display_name("MakerBot Replicator 2");
-  printer.set_process(v1::PRINT_PROCESS_EXTRUSION);
-  printer.set_min_radius_mm(0.4);
-  printer.set_tray_x_mm(225);
-  printer.set_tray_y_mm(145);
-  printer.set_tray_z_mm(150);
-  printer.set_default_material_id("pla");
-  printer.set_max_internal_radius_mm(5);
-  printer.set_source(kSource);
-  return printer;
-}
-
-v1::MaterialProfile pa() {
-  v1::MaterialProfile material;
-  material.set_id("pa");
-  material.set_display_name("PA plastic");
-  material.set_tensile_modulus_mpa(1586);
-  material.set_shear_modulus_mpa(1387);
-  material.set_tensile_strength_mpa(43);
-  material.set_shear_strength_mpa(48);
-  material.set_slenderness(60);
-  material.set_density_g_cm3(1.15);
-  material.set_source(kSource);
-  return material;
-}
-
-v1::MaterialProfile pla() {
-  v1::MaterialProfile material;
-  material.set_id("pla");
-  material.set_display_name("PLA");
-  material.set_tensile_modulus_mpa(2673);
-  material.set_shear_modulus_mpa(1533);
-  material.set_tensile_strength_mpa(92);
-  material.set_shear_strength_mpa(52);
-  material.set_slenderness(60);
-  material.set_density_g_cm3(1.24);
-  material.set_source(kSource);
-  return material;
+  std::vector<std::string> ids;
+  for (const auto& profile : profiles) ids.push_back(profile.id());
+  return joined(ids);
 }
 
 }  // namespace
@@ -104,6 +47,24 @@ const v1::MaterialProfile* Catalog::find_material(std::string_view id) const {
 std::string Catalog::printer_ids() const { return joined_ids(printers_); }
 std::string Catalog::material_ids() const { return joined_ids(materials_); }
 
-Catalog built_in_catalog() { return Catalog({sinterstation_hiq(), makerbot_replicator_2()}, {pa(), pla()}); }
+std::string missing_for_a_job(const v1::PrinterProfile& printer) {
+  std::vector<std::string> missing;
+  if (!printer.has_min_radius_mm()) missing.push_back("min_radius_mm");
+  if (!printer.has_max_internal_radius_mm()) missing.push_back("max_internal_radius_mm");
+  if (!printer.has_tray_x_mm()) missing.push_back("tray_x_mm");
+  if (!printer.has_tray_y_mm()) missing.push_back("tray_y_mm");
+  if (!printer.has_tray_z_mm()) missing.push_back("tray_z_mm");
+  if (printer.process() == v1::PRINT_PROCESS_EXTRUSION && !printer.has_printable_length())
+    missing.push_back("printable_length");
+  return joined(missing);
+}
+
+std::string missing_for_a_job(const v1::MaterialProfile& material) {
+  std::vector<std::string> missing;
+  if (!material.has_tensile_modulus_mpa()) missing.push_back("tensile_modulus_mpa");
+  if (!material.has_shear_modulus_mpa()) missing.push_back("shear_modulus_mpa");
+  if (!material.has_density_g_cm3()) missing.push_back("density_g_cm3");
+  return joined(missing);
+}
 
 }  // namespace skinframe::server

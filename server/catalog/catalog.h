@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The printers and materials that the server knows. Immutable once made: profiles from the operator's files
-// will be further entries of the same vectors.
+// The printers and materials that the server knows. Immutable once made; live_catalog.h exchanges one for
+// another.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "absl/status/statusor.h"
 #include "skinframe/v1/catalog.pb.h"
 
 namespace skinframe::server {
@@ -31,7 +33,17 @@ class Catalog {
   std::vector<v1::MaterialProfile> materials_;
 };
 
-// The two printers and two materials of Wang et al. 2013, Table 1.
+// The fields that a job needs and that are absent, by name: "min_radius_mm, tray_z_mm"; empty when a job can
+// run. An extrusion printer needs its printable_length.
+std::string missing_for_a_job(const v1::PrinterProfile& printer);
+std::string missing_for_a_job(const v1::MaterialProfile& material);
+
+// The files of profiles/, which are part of the program.
 Catalog built_in_catalog();
+
+// The built-in profiles and those of the folder's *.json files; a file's profile takes the place of a
+// built-in one of the same id. INVALID_ARGUMENT names file, line and field; also when two files give one id,
+// or a printer's default material is nowhere. NOT_FOUND: no such folder.
+absl::StatusOr<Catalog> load_catalog(const std::filesystem::path& folder);
 
 }  // namespace skinframe::server

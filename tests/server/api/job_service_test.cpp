@@ -83,12 +83,34 @@ TEST_F(JobServiceTest, TheCatalogListsTheBuiltInProfiles) {
   grpc::ClientContext printers_context;
   v1::ListPrintersResponse printers;
   ASSERT_TRUE(catalog_->ListPrinters(&printers_context, {}, &printers).ok());
-  ASSERT_EQ(printers.printers_size(), 2);
-  EXPECT_EQ(printers.printers(0).id(), "makerbot-replicator-2");
+  ASSERT_GE(printers.printers_size(), 6);
+  EXPECT_EQ(printers.printers(0).id(), "bambu-x1-carbon") << "in the order of their ids";
   grpc::ClientContext materials_context;
   v1::ListMaterialsResponse materials;
   ASSERT_TRUE(catalog_->ListMaterials(&materials_context, {}, &materials).ok());
-  EXPECT_EQ(materials.materials_size(), 2);
+  EXPECT_GE(materials.materials_size(), 6);
+}
+
+TEST_F(JobServiceTest, AQueuedJobKeepsTheProfileItWasSubmittedWith) {
+  test::TemporaryFolder profiles;
+  const auto write = [&](double radius) {
+    profiles.write("mine.json", R"({"printer": {"id": "mine", "display_name": "Mine", "process": "powder",
+      "default_material_id": "pa", "max_internal_radius_mm": 5, "tray_x_mm": 100, "tray_y_mm": 100,
+      "tray_z_mm": 100, "source": "s", "min_radius_mm": )" +
+                                    std::to_string(radius) + "}}");
+  };
+  write(0.5);
+  options_.profiles = profiles.path();
+  restart();
+  v1::SubmitJobRequest request;
+  *request.mutable_spec() = spec();
+  request.mutable_spec()->mutable_printers(0)->set_printer_id("mine");
+  ASSERT_TRUE(submit(request).ok());
+  write(0.625);
+  restart();
+  const v1::Assignment assignment = lease();
+  ASSERT_EQ(assignment.printers_size(), 1);
+  EXPECT_EQ(assignment.printers(0).min_radius_mm(), 0.5);
 }
 
 }  // namespace

@@ -63,15 +63,22 @@ TEST(SpecValidation, TheWholeIsBoundedWithFieldsOfVersionsToCome) {
 
 TEST(SpecValidation, AnUnknownPrinterIsAnsweredWithTheKnownOnes) {
   expect_refused([](auto& s) { s.mutable_printers(0)->set_printer_id("x"); },
-                 "unknown printer \"x\"; known: makerbot-replicator-2, sinterstation-hiq");
+                 "unknown printer \"x\"; known: bambu-x1-carbon, ");
   expect_refused([](auto& s) { s.mutable_printers(0)->set_material_id("x"); },
-                 "unknown material \"x\"; known: pa, pla");
+                 "unknown material \"x\"; known: abs, ");
 }
 
 TEST(SpecValidation, PrintersAreOneOrMoreAndNoneTwice) {
   expect_refused([](auto& s) { s.clear_printers(); }, "spec.printers");
   expect_good([](auto& s) { s.add_printers()->set_printer_id("makerbot-replicator-2"); });
   expect_refused([](auto& s) { s.add_printers()->set_printer_id("sinterstation-hiq"); }, "named twice");
+}
+
+TEST(SpecValidation, WhatAProfileDoesNotKnowAndAJobNeedsIsNamed) {
+  expect_refused([](auto& s) { s.mutable_printers(0)->set_material_id("petg"); },
+                 "material \"petg\": a job needs shear_modulus_mpa, which its profile does not know");
+  expect_refused([](auto& s) { s.mutable_printers(0)->set_printer_id("prusa-sl1s"); },
+                 "printer \"prusa-sl1s\" has no default material; name one: abs, ");
 }
 
 TEST(SpecValidation, TheInputIsAMeshByItsHash) {

@@ -8,26 +8,67 @@ namespace {
 
 TEST(Catalog, HasThePrintersOfTable1) {
   const Catalog catalog = built_in_catalog();
-  EXPECT_EQ(catalog.printer_ids(), "makerbot-replicator-2, sinterstation-hiq");
   const auto* sls = catalog.find_printer("sinterstation-hiq");
   ASSERT_NE(sls, nullptr);
   EXPECT_EQ(sls->min_radius_mm(), 0.5);
   EXPECT_EQ(sls->tray_x_mm(), 457);
+  EXPECT_EQ(sls->tray_y_mm(), 380);
+  EXPECT_EQ(sls->tray_z_mm(), 330);
   EXPECT_EQ(sls->process(), v1::PRINT_PROCESS_POWDER);
+  EXPECT_EQ(sls->default_material_id(), "pa");
+  EXPECT_EQ(sls->drain_holes().diameter_mm(), 20);
+  EXPECT_EQ(sls->drain_holes().least_count(), 2);
   const auto* fdm = catalog.find_printer("makerbot-replicator-2");
   ASSERT_NE(fdm, nullptr);
   EXPECT_EQ(fdm->min_radius_mm(), 0.4);
+  EXPECT_EQ(fdm->tray_x_mm(), 225);
+  EXPECT_EQ(fdm->tray_y_mm(), 145);
   EXPECT_EQ(fdm->tray_z_mm(), 150);
   EXPECT_EQ(fdm->process(), v1::PRINT_PROCESS_EXTRUSION);
+  EXPECT_TRUE(fdm->printable_length().is_default()) << "nobody measured it";
 }
 
-TEST(Catalog, EveryPrintersDefaultMaterialIsThere) {
+TEST(Catalog, HasTheMaterialsOfTable1) {
   const Catalog catalog = built_in_catalog();
+  const auto expect = [&](const char* id, double gamma, double mu, double sigma, double tau, double rho) {
+    const auto* m = catalog.find_material(id);
+    ASSERT_NE(m, nullptr);
+    EXPECT_EQ(m->tensile_modulus_mpa(), gamma);
+    EXPECT_EQ(m->shear_modulus_mpa(), mu);
+    EXPECT_EQ(m->tensile_strength_mpa(), sigma);
+    EXPECT_EQ(m->shear_strength_mpa(), tau);
+    EXPECT_EQ(m->slenderness(), 60);
+    EXPECT_EQ(m->density_g_cm3(), rho);
+  };
+  expect("pa", 1586, 1387, 43, 48, 1.15);
+  expect("pla", 2673, 1533, 92, 52, 1.24);
+}
+
+TEST(Catalog, HasFourMoreOfEachKindAndEveryPrintersDefaultMaterial) {
+  const Catalog catalog = built_in_catalog();
+  EXPECT_GE(catalog.printers().size(), 6u);
+  EXPECT_GE(catalog.materials().size(), 6u);
   for (const auto& printer : catalog.printers()) {
-    EXPECT_NE(catalog.find_material(printer.default_material_id()), nullptr) << printer.id();
+    const std::string& material = printer.default_material_id();
+    EXPECT_TRUE(material.empty() || catalog.find_material(material) != nullptr) << printer.id();
   }
-  EXPECT_EQ(catalog.find_material("pa")->tensile_modulus_mpa(), 1586);
-  EXPECT_EQ(catalog.find_material("pla")->density_g_cm3(), 1.24);
+}
+
+TEST(Catalog, EveryBuiltInPrinterHasAllThatAJobNeeds) {
+  const Catalog catalog = built_in_catalog();
+  for (const auto& printer : catalog.printers()) EXPECT_EQ(missing_for_a_job(printer), "") << printer.id();
+}
+
+TEST(Catalog, WhatAJobNeedsAndTheProfileDoesNotKnowIsNamed) {
+  const Catalog catalog = built_in_catalog();
+  v1::PrinterProfile printer = *catalog.find_printer("makerbot-replicator-2");
+  printer.clear_tray_z_mm();
+  printer.clear_printable_length();
+  EXPECT_EQ(missing_for_a_job(printer), "tray_z_mm, printable_length");
+  printer.set_process(v1::PRINT_PROCESS_POWDER);
+  EXPECT_EQ(missing_for_a_job(printer), "tray_z_mm") << "powder carries every strut";
+  EXPECT_EQ(missing_for_a_job(*catalog.find_material("petg")), "shear_modulus_mpa");
+  EXPECT_EQ(missing_for_a_job(*catalog.find_material("pa")), "");
 }
 
 TEST(Catalog, UnknownIdsAreNull) {
