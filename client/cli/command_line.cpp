@@ -18,8 +18,10 @@
 namespace skinframe::client {
 namespace {
 
-constexpr std::array<std::string_view, 3> kLocalVerbs = {"sample", "check", "solve-frame"};
-constexpr std::array<std::string_view, 3> kUnbuiltVerbs = {"calibrate", "render", "doctor"};
+constexpr std::array<std::string_view, 4> kLocalVerbs = {"sample", "check", "solve-frame", "calibrate"};
+constexpr std::array<std::string_view, 2> kUnbuiltVerbs = {"render", "doctor"};
+// Verbs of the server with a part that runs here: `printers import FILE`.
+constexpr std::array<std::string_view, 2> kProfileVerbs = {"printers", "materials"};
 
 template <class List>
 bool contains(const List& list, std::string_view word) {
@@ -70,16 +72,34 @@ class CommandLine {
     add_job_verb("cancel", "Ask for a job's end", "  skinframe cancel JOB", cancel);
     add_download();
     add_job_verb("delete", "Forget a job that has ended", "  skinframe delete JOB", remove);
-    verb("printers", "The printers that the server knows", "  skinframe printers",
-         [this] { return printers(global_); });
-    verb("materials", "The materials that the server knows", "  skinframe materials --json",
-         [this] { return materials(global_); });
+    add_profiles(
+        "printers", "The printers that the server knows; one whole with its sources; import of one",
+        "  skinframe printers\n"
+        "  skinframe printers show makerbot-replicator-2\n"
+        "  skinframe printers show makerbot-replicator-2 --json > mine.json   a profile file to edit\n"
+        "  skinframe printers import bundle.ini --preset \"Original Prusa i3 MK3\" > mk3.json\n"
+        "  skinframe printers import ultimaker_s5.def.json > s5.json\n",
+        printers);
+    add_profiles("materials",
+                 "The materials that the server knows; one whole with its sources; import of one",
+                 "  skinframe materials --json\n"
+                 "  skinframe materials show pla\n"
+                 "  skinframe materials import spoolman-filament.json > my-petg.json\n",
+                 materials);
     add_local("sample", "Write a body that ships with the program (runs here)",
               "  skinframe sample --list\n  skinframe sample hanging-ball --out ball.stl");
     add_local("check", "Re-check every claim of a result from its files alone (runs here)",
               "  skinframe check fish");
     add_local("solve-frame", "The optimiser alone, on a frame problem file (runs here)",
               "  skinframe solve-frame problem.json --out result.json");
+    add_local(
+        "calibrate", "A printer's longest printable strut by angle, from printed test struts (runs here)",
+        "  skinframe calibrate points.csv\n"
+        "  skinframe calibrate points.csv --out fragment.json   \"printable_length\" of a profile file\n"
+        "points.csv has a line a test strut: angle_deg,length_mm: its angle from the vertical (0 stands\n"
+        "upright, 90 lies flat) and the longest one of that angle that printed well. The curve is the\n"
+        "nearest that never rises with the angle; nothing is said of struts flatter than the flattest\n"
+        "that was printed: for a profile print flat ones too, bridges at 90 degrees.");
   }
 
   int run_words(int argc, char** argv) {
@@ -117,6 +137,22 @@ class CommandLine {
         ->required();
   }
 
+  void add_profiles(const char* name, const char* description, const std::string& examples,
+                    ExitCode (*action)(const GlobalArguments&, const std::string&)) {
+    CLI::App& sub =
+        verb(name, description,
+             examples +
+                 "`import` runs here: from PrusaSlicer .ini, Cura .def.json or Spoolman JSON to a "
+                 "profile file on\nstdout, null where the file does not say; for the server's "
+                 "--profiles folder.",
+             [this, action] { return action(global_, profile_id_); });
+    sub.require_subcommand(0, 1);
+    CLI::App& show = *sub.add_subcommand("show", "One whole, with its sources; --json: as a profile file");
+    show.fallthrough();
+    show.add_option("ID", profile_id_, "Its id")->required();
+    sub.add_subcommand("import", "A profile file from another program's file (runs here)")->allow_extras();
+  }
+
   void add_run() {
     CLI::App& sub =
         verb("run", "One command: starts a server and a worker here, runs the job, stops them",
@@ -129,6 +165,8 @@ class CommandLine {
     sub.add_option("--out", run_.out, "Folder for the results")->required();
     sub.add_option("--data", run_.data,
                    "Folder of the embedded server, kept afterwards (default: temporary)");
+    sub.add_option("--profiles", run_.profiles,
+                   "Folder of printer and material profiles of your own (*.json)");
   }
 
   void add_submit() {
@@ -197,7 +235,7 @@ class CommandLine {
   RunArguments run_;
   SubmitArguments submit_;
   ListArguments list_;
-  std::string job_id_;
+  std::string job_id_, profile_id_;
   std::filesystem::path out_;
   std::int64_t from_ = 0;
   Action action_;
@@ -207,7 +245,10 @@ class CommandLine {
 
 std::optional<LocalVerb> local_verb(const std::vector<std::string>& words) {
   const auto index = verb_index(words);
-  if (!index || !contains(kLocalVerbs, words[*index])) return std::nullopt;
+  if (!index) return std::nullopt;
+  const bool imports =
+      contains(kProfileVerbs, words[*index]) && *index + 1 < words.size() && words[*index + 1] == "import";
+  if (!imports && !contains(kLocalVerbs, words[*index])) return std::nullopt;
   LocalVerb out;
   out.words.assign(words.begin() + static_cast<std::ptrdiff_t>(*index), words.end());
   if (contains(out.words, "--help") || contains(out.words, "-h")) return std::nullopt;

@@ -51,8 +51,11 @@ bool wait_readable(int fd, int quit, int timeout_ms) {
 
 }  // namespace
 
-EmbeddedFarm::EmbeddedFarm(fs::path data, std::stop_source stop)
-    : data_(std::move(data)), stop_(std::move(stop)), quit_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
+EmbeddedFarm::EmbeddedFarm(fs::path data, fs::path profiles, std::stop_source stop)
+    : data_(std::move(data)),
+      profiles_(std::move(profiles)),
+      stop_(std::move(stop)),
+      quit_(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   std::promise<Result<std::string>> started;
   started_ = started.get_future();
   // One thread starts, watches and stops both: the system ends a child when the thread that started it ends.
@@ -121,9 +124,10 @@ Result<std::string> EmbeddedFarm::serve(std::promise<Result<std::string>>& start
   const fs::path data = data_.empty() ? folder_ / "data" : data_;
   const fs::path server_log = folder_ / "server.log", worker_log = folder_ / "worker.log";
 
-  auto server = BackgroundProcess::start({server_path->string(), "--listen", "127.0.0.1:0", "--data",
-                                          data.string(), "--port-file", folder_ / "port"},
-                                         server_log);
+  std::vector<std::string> server_words = {server_path->string(), "--listen",    "127.0.0.1:0",   "--data",
+                                           data.string(),         "--port-file", folder_ / "port"};
+  if (!profiles_.empty()) server_words.insert(server_words.end(), {"--profiles", profiles_.string()});
+  auto server = BackgroundProcess::start(server_words, server_log);
   if (!server) return server.failure();
   std::optional<std::string> address;
   for (const auto give_up = steady_clock::now() + kStartTime; !(address = read_address(folder_ / "port"));) {

@@ -20,9 +20,9 @@ namespace skinframe::client {
 
 class EmbeddedFarm {
  public:
-  // data empty: in the temporary folder, and gone with it. `on_failure` is asked to stop when the farm cannot
-  // go on.
-  EmbeddedFarm(std::filesystem::path data, std::stop_source stop);
+  // data empty: in the temporary folder, and gone with it. profiles empty: the built-in ones. `on_failure` is
+  // asked to stop when the farm cannot go on.
+  EmbeddedFarm(std::filesystem::path data, std::filesystem::path profiles, std::stop_source stop);
   ~EmbeddedFarm();  // stops both, removes the temporary folder (the logs stay after keep_logs)
   EmbeddedFarm(const EmbeddedFarm&) = delete;
   EmbeddedFarm& operator=(const EmbeddedFarm&) = delete;
@@ -38,7 +38,7 @@ class EmbeddedFarm {
   Result<std::string> serve(std::promise<Result<std::string>>& started);
   void fail(Failure failure);
 
-  std::filesystem::path folder_, data_;
+  std::filesystem::path folder_, data_, profiles_;
   std::stop_source stop_;
   std::future<Result<std::string>> started_;
   mutable std::mutex mutex_;

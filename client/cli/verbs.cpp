@@ -16,6 +16,7 @@
 #include "client/present/event_line.h"
 #include "client/present/job_table.h"
 #include "client/present/json.h"
+#include "client/present/profile_table.h"
 #include "client/present/progress_display.h"
 #include "client/present/words.h"
 #include "client/transfer/download.h"
@@ -98,6 +99,23 @@ class TerminalWatch {
   std::string stage_;
 };
 
+template <class Profiles>
+ExitCode show_profile(const char* kind, const Profiles& profiles, const std::string& id, bool json) {
+  const auto at = std::find_if(profiles.begin(), profiles.end(), [&](const auto& p) { return p.id() == id; });
+  if (at == profiles.end()) {
+    std::string known;
+    for (const auto& profile : profiles) known += (known.empty() ? "" : ", ") + one_line(profile.id());
+    return tell(
+        {FailureKind::kUsage, fmt::format("unknown {} \"{}\"; known: {}", kind, one_line(id), known)});
+  }
+  if (json) {
+    print_json(profile_file(*at));
+  } else {
+    fmt::print("{}", profile_sheet(*at));
+  }
+  return kExitSuccess;
+}
+
 Result<Connection> open(const GlobalArguments& global, const Interrupts& interrupts) {
   auto connection = connect(global.server);
   if (connection) connection->stop = interrupts.stop_source().get_token();
@@ -111,7 +129,7 @@ ExitCode run(const GlobalArguments& global, const RunArguments& arguments) {
   if (!request) return tell(request.failure());
   if (const auto file = digest_input_file(arguments.job.mesh); !file) return tell(file.failure());
   Interrupts interrupts;
-  EmbeddedFarm farm(arguments.data, interrupts.stop_source());
+  EmbeddedFarm farm(arguments.data, arguments.profiles, interrupts.stop_source());
   const ExitCode code = run_on(farm, interrupts, global, arguments, *request);
   if (code == kExitFailed || code == kExitUnreachable) {
     const auto logs = farm.keep_logs();  // empty: a program is missing, there are none
@@ -279,11 +297,12 @@ ExitCode download(const GlobalArguments& global, const std::string& job_id,
   return kExitSuccess;
 }
 
-ExitCode printers(const GlobalArguments& global) {
+ExitCode printers(const GlobalArguments& global, const std::string& id) {
   const auto connection = connect(global.server);
   if (!connection) return tell(connection.failure());
   const auto all = list_printers(*connection);
   if (!all) return tell(all.failure());
+  if (!id.empty()) return show_profile("printer", all->printers(), id, global.json);
   if (global.json) {
     print_json(to_json(*all));
   } else {
@@ -292,11 +311,12 @@ ExitCode printers(const GlobalArguments& global) {
   return kExitSuccess;
 }
 
-ExitCode materials(const GlobalArguments& global) {
+ExitCode materials(const GlobalArguments& global, const std::string& id) {
   const auto connection = connect(global.server);
   if (!connection) return tell(connection.failure());
   const auto all = list_materials(*connection);
   if (!all) return tell(all.failure());
+  if (!id.empty()) return show_profile("material", all->materials(), id, global.json);
   if (global.json) {
     print_json(to_json(*all));
   } else {

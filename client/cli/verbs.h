@@ -21,7 +21,8 @@ struct GlobalArguments {
 struct RunArguments {
   JobArguments job;
   std::filesystem::path out;
-  std::filesystem::path data;  // empty: temporary
+  std::filesystem::path data;      // empty: temporary
+  std::filesystem::path profiles;  // folder of further printers and materials; empty: none
 };
 
 struct SubmitArguments {
@@ -43,7 +44,8 @@ ExitCode list(const GlobalArguments& global, const ListArguments& arguments);
 ExitCode cancel(const GlobalArguments& global, const std::string& job_id);
 ExitCode remove(const GlobalArguments& global, const std::string& job_id);
 ExitCode download(const GlobalArguments& global, const std::string& job_id, const std::filesystem::path& out);
-ExitCode printers(const GlobalArguments& global);
-ExitCode materials(const GlobalArguments& global);
+// id empty: all of them, in a list.
+ExitCode printers(const GlobalArguments& global, const std::string& id);
+ExitCode materials(const GlobalArguments& global, const std::string& id);
 
 }  // namespace skinframe::client

@@ -6,37 +6,11 @@
 #include <algorithm>
 
 #include "client/present/event_line.h"
+#include "client/present/table.h"
 #include "client/present/words.h"
 
 namespace skinframe::client {
 namespace {
-
-using Row = std::vector<std::string>;
-
-// Columns as wide as their widest cell; the first two to the left, figures to the right.
-std::string table(const std::vector<Row>& rows, std::size_t left_columns) {
-  std::vector<std::size_t> widths;
-  for (const Row& row : rows) {
-    widths.resize(std::max(widths.size(), row.size()));
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
-  }
-  std::string out;
-  for (const Row& row : rows) {
-    std::string line;
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      if (i > 0) line += "  ";
-      line += i < left_columns ? fmt::format("{:<{}}", row[i], widths[i])
-                               : fmt::format("{:>{}}", row[i], widths[i]);
-    }
-    line.erase(line.find_last_not_of(' ') + 1);
-    out += line + "\n";
-  }
-  return out;
-}
-
-std::string or_dash(bool present, double value, const char* format) {
-  return present ? fmt::format(fmt::runtime(format), value) : "-";
-}
 
 bool is_frame_problem(const v1::Job& job) { return job.spec().has_frame_problem_sha256(); }
 
@@ -147,31 +121,6 @@ std::string job_list(const std::vector<v1::Job>& jobs) {
                     one_line(job.spec().mesh_name()), printer_names(job)});
   }
   return table(rows, 5);
-}
-
-std::string printer_list(const v1::ListPrintersResponse& printers) {
-  std::vector<Row> rows = {{"printer", "process", "material", "name", "radius mm", "tray mm"}};
-  for (const v1::PrinterProfile& p : printers.printers()) {
-    rows.push_back({one_line(p.id()), process_word(p.process()), one_line(p.default_material_id()),
-                    one_line(p.display_name()), fmt::format("{}", p.min_radius_mm()),
-                    fmt::format("{}x{}x{}", p.tray_x_mm(), p.tray_y_mm(), p.tray_z_mm())});
-  }
-  return table(rows, 4);
-}
-
-std::string material_list(const v1::ListMaterialsResponse& materials) {
-  std::vector<Row> rows = {{"material", "name", "tensile modulus MPa", "shear modulus MPa",
-                            "tensile strength MPa", "shear strength MPa", "slenderness", "density g/cm3",
-                            "price/kg"}};
-  for (const v1::MaterialProfile& m : materials.materials()) {
-    rows.push_back({one_line(m.id()), one_line(m.display_name()), fmt::format("{}", m.tensile_modulus_mpa()),
-                    fmt::format("{}", m.shear_modulus_mpa()),
-                    or_dash(m.has_tensile_strength_mpa(), m.tensile_strength_mpa(), "{}"),
-                    or_dash(m.has_shear_strength_mpa(), m.shear_strength_mpa(), "{}"),
-                    or_dash(m.has_slenderness(), m.slenderness(), "{}"), fmt::format("{}", m.density_g_cm3()),
-                    or_dash(m.has_price_per_kg(), m.price_per_kg(), "{:.2f}")});
-  }
-  return table(rows, 2);
 }
 
 }  // namespace skinframe::client

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person reads of jobs, printers and materials on stdout.
+// What a person reads of jobs on stdout.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "skinframe/v1/catalog.pb.h"
 #include "skinframe/v1/job.pb.h"
 
 namespace skinframe::client {
@@ -20,7 +19,5 @@ std::string end_report(const v1::Job& job);
 
 std::string job_description(const v1::Job& job);         // `get`
 std::string job_list(const std::vector<v1::Job>& jobs);  // `list`
-std::string printer_list(const v1::ListPrintersResponse& printers);
-std::string material_list(const v1::ListMaterialsResponse& materials);
 
 }  // namespace skinframe::client

@@ -10,16 +10,27 @@ namespace skinframe::integration {
 
 using nlohmann::json;
 
-Farm::Farm(const Scratch& scratch) : scratch_(scratch.path()) { start_server(); }
+Farm::Farm(const Scratch& scratch, std::vector<std::string> server_words)
+    : scratch_(scratch.path()), server_words_(std::move(server_words)) {
+  start_server();
+}
 
 void Farm::start_server() {
   const auto port_file = scratch_ / "port";
   std::filesystem::remove(port_file);
-  server_ = std::make_unique<Process>(
-      std::vector<std::string>{binary("skinframe-server"), "--listen",
-                               address_.empty() ? "127.0.0.1:0" : address_, "--data", scratch_ / "data",
-                               "--port-file", port_file, "--lease-seconds", "3", "--heartbeat-seconds", "1"},
-      scratch_ / ("server-" + std::to_string(starts_++)));
+  std::vector<std::string> words{binary("skinframe-server"),
+                                 "--listen",
+                                 address_.empty() ? "127.0.0.1:0" : address_,
+                                 "--data",
+                                 scratch_ / "data",
+                                 "--port-file",
+                                 port_file,
+                                 "--lease-seconds",
+                                 "3",
+                                 "--heartbeat-seconds",
+                                 "1"};
+  words.insert(words.end(), server_words_.begin(), server_words_.end());
+  server_ = std::make_unique<Process>(words, scratch_ / ("server-" + std::to_string(starts_++)));
   ASSERT_TRUE(eventually([&] { return !read_file(port_file).empty(); }, Seconds(30))) << server_->err();
   address_ = read_file(port_file);
   while (!address_.empty() && (address_.back() == '\n' || address_.back() == ' ')) address_.pop_back();

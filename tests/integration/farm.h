@@ -13,13 +13,14 @@ namespace skinframe::integration {
 
 class Farm {
  public:
-  // Short leases, so that a takeover is seen in seconds.
-  explicit Farm(const Scratch& scratch);
+  // Short leases, so that a takeover is seen in seconds. server_words: further options of the server.
+  explicit Farm(const Scratch& scratch, std::vector<std::string> server_words = {});
 
   // The server keeps its port over restarts, as an operator's would.
   void start_server();
   void kill_server();
   void stop_server();  // SIGTERM; expects a clean end
+  Process& server() { return *server_; }
   Process& start_worker(const std::string& name);
 
   const std::string& address() const { return address_; }
@@ -34,6 +35,7 @@ class Farm {
 
  private:
   std::filesystem::path scratch_;
+  std::vector<std::string> server_words_;
   std::string address_;
   std::unique_ptr<Process> server_;
   std::vector<std::unique_ptr<Process>> workers_;

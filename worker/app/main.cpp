@@ -8,6 +8,7 @@
 
 #include "worker/agent/agent.h"
 #include "worker/app/local_verbs.h"
+#include "worker/app/profile_verbs.h"
 #include "worker/job/run_job.h"
 #include "worker/run/one_blas_thread.h"
 
@@ -47,6 +48,7 @@ int main(int argc, char** argv) {
   CLI::App* job = app.add_subcommand("run-job", "One job in this process; the agent calls it");
   job->add_option("WORKDIR", job_dir, "Folder with job.json")->required();
   LocalVerbs local(app);
+  ProfileVerbs profiles(app);
 
   try {
     app.parse(argc, argv);
@@ -56,6 +58,7 @@ int main(int argc, char** argv) {
 
   if (job->parsed()) return run_job(job_dir);
   if (const auto code = local.run()) return *code;
+  if (const auto code = profiles.run()) return *code;
   agent.work_root = work_root;
   agent.tls_root_cert = tls_ca;
   if (auto valid = agent.validate(); !valid) {

@@ -59,7 +59,7 @@ TEST_F(Program, AloneItTeachesAndSaysWrongUsage) {
 
 TEST_F(Program, EveryVerbTeachesWithAnExample) {
   for (const char* verb : {"run", "submit", "watch", "get", "list", "cancel", "download", "printers",
-                           "materials", "delete", "sample", "check", "solve-frame"}) {
+                           "materials", "delete", "sample", "check", "solve-frame", "calibrate"}) {
     const Ran ran = run(std::string(verb) + " --help");
     EXPECT_EQ(ran.code, 0) << verb;
     EXPECT_THAT(ran.out, HasSubstr(std::string("  skinframe ") + verb)) << verb;
