@@ -95,6 +95,7 @@ class CommandLine {
     add_local(
         "calibrate", "A printer's longest printable strut by angle, from printed test struts (runs here)",
         "  skinframe calibrate points.csv\n"
+        "  skinframe calibrate points.csv --json                curve and residuals as JSON\n"
         "  skinframe calibrate points.csv --out fragment.json   \"printable_length\" of a profile file\n"
         "points.csv has a line a test strut: angle_deg,length_mm: its angle from the vertical (0 stands\n"
         "upright, 90 lies flat) and the longest one of that angle that printed well. The curve is the\n"
@@ -150,7 +151,16 @@ class CommandLine {
     CLI::App& show = *sub.add_subcommand("show", "One whole, with its sources; --json: as a profile file");
     show.fallthrough();
     show.add_option("ID", profile_id_, "Its id")->required();
-    sub.add_subcommand("import", "A profile file from another program's file (runs here)")->allow_extras();
+    CLI::App& import =
+        *sub.add_subcommand("import", "A profile file from another program's file (runs here)");
+    import.allow_extras();
+    import.footer(
+        "Usage: import FILE [--preset NAME] [--id ID] [--out FILE]\n"
+        "  --preset   which one, where the file has several; without it they are listed\n"
+        "  --id       of the profile (default: made of its name)\n"
+        "  --out      file to write (default: stdout)\n"
+        "Examples:\n" +
+        examples);
   }
 
   void add_run() {

@@ -102,6 +102,9 @@ JobRecord JobService::new_record(const v1::SubmitJobRequest& request, const Cata
         wanted.material_id().empty() ? printer.default_material_id() : wanted.material_id();
     record.printers.push_back(printer);
     record.materials.push_back(*catalog.find_material(material_id));
+    record.printers.back()
+        .clear_sources();  // a worker needs the numbers alone, and each job is kept with them
+    record.materials.back().clear_sources();
   }
   return record;
 }

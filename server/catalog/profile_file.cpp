@@ -83,7 +83,7 @@ class Reader {
           !status.ok())
         return status;
     }
-    return absl::OkStatus();
+    return check_given(object, path, message);
   }
 
  private:
@@ -92,6 +92,20 @@ class Reader {
     for (int i = 0; i < message.GetDescriptor()->field_count(); ++i)
       names += (i > 0 ? ", " : "") + message.GetDescriptor()->field(i)->name();
     return names;
+  }
+
+  // A number or flag that cannot be absent would else be 0 or false without anybody having said so.
+  absl::Status check_given(const json& object, const std::string& path, const Message& message) const {
+    for (int i = 0; i < message.GetDescriptor()->field_count(); ++i) {
+      const FieldDescriptor& field = *message.GetDescriptor()->field(i);
+      const auto type = field.cpp_type();
+      const bool counts = type == FieldDescriptor::CPPTYPE_DOUBLE || type == FieldDescriptor::CPPTYPE_INT32 ||
+                          type == FieldDescriptor::CPPTYPE_BOOL;
+      if (!counts || field.has_presence()) continue;
+      if (const auto at = object.find(field.name()); at == object.end() || at->is_null())
+        return error(path + "." + field.name(), "is missing");
+    }
+    return absl::OkStatus();
   }
 
   absl::Status read_one(const json& value, const std::string& path, const FieldDescriptor& field,
@@ -262,10 +276,6 @@ absl::Status check_printer(const Reader& reader, const v1::PrinterProfile& print
       printer.max_internal_radius_mm() < printer.min_radius_mm())
     return reader.error(path + ".max_internal_radius_mm",
                         fmt::format("is {:g}, below min_radius_mm", printer.max_internal_radius_mm()));
-  if (printer.has_drain_holes() &&
-      (printer.drain_holes().diameter_mm() == 0 || printer.drain_holes().least_count() == 0))
-    return reader.error(path + ".drain_holes",
-                        "needs diameter_mm and least_count; null when no holes are to be made");
   if (printer.has_printable_length())
     return check_curve(reader, path + ".printable_length", printer.printable_length());
   return absl::OkStatus();

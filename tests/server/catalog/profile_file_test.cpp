@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/catalog/profile_file.h"
 
+#include <google/protobuf/descriptor.h>
 #include <gtest/gtest.h>
 
+#include <random>
 #include <string>
 
 namespace skinframe::server {
@@ -94,7 +96,7 @@ TEST(ProfileFile, WhatIsWrongIsSaidWithFileLineAndField) {
        "mine.json:13: printer.printable_length.points[2].angle_deg: is 89: nothing would be known"},
       {"false", "0", "mine.json:15: printer.printable_length.is_default: is neither true nor false"},
       {"\"measured on 2026-11-20\"", "null", "printer.printable_length.source: is missing"},
-      {", \"least_count\": 2", "", "mine.json:18: printer.drain_holes: needs diameter_mm and least_count"},
+      {", \"least_count\": 2", "", "mine.json:18: printer.drain_holes.least_count: is missing"},
       {"\"least_count\": 2", "\"least_count\": 2.5",
        "mine.json:18: printer.drain_holes.least_count: is not a whole number"},
       {"\"source\": \"its data sheet\"", "\"source\": null",
@@ -110,6 +112,55 @@ TEST(ProfileFile, WhatIsWrongIsSaidWithFileLineAndField) {
     EXPECT_NE(parsed.status().message().find(bad.says), absl::string_view::npos)
         << bad.says << "\n is not in\n"
         << parsed.status().message();
+  }
+}
+
+TEST(ProfileFile, WhatACurveNeedsIsNotTakenForGranted) {
+  const auto refused = [](const std::string& part, const std::string& by, const std::string& says) {
+    const auto parsed = parse_profile(replaced(kPrinter, part, by), "mine.json");
+    EXPECT_NE(parsed.status().message().find(says), absl::string_view::npos) << parsed.status();
+  };
+  refused("\"angle_deg\": 45, ", "", "printer.printable_length.points[0].angle_deg: is missing");
+  refused("\"is_default\": false,", "", "mine.json:9: printer.printable_length.is_default: is missing");
+}
+
+// Every number of the format, told from catalog.proto: none is taken without a bound.
+void expect_bounded(const google::protobuf::Descriptor& type, const std::string& before,
+                    const std::string& after) {
+  using google::protobuf::FieldDescriptor;
+  for (int i = 0; i < type.field_count(); ++i) {
+    const FieldDescriptor& field = *type.field(i);
+    const std::string start = before + "\"" + field.name() + "\": ";
+    if (field.is_map()) continue;
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
+      expect_bounded(*field.message_type(), start + (field.is_repeated() ? "[{" : "{"),
+                     (field.is_repeated() ? "}]" : "}") + after);
+    } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE ||
+               field.cpp_type() == FieldDescriptor::CPPTYPE_INT32) {
+      const auto parsed = parse_profile(start + "-4711" + after, "f");
+      EXPECT_NE(parsed.status().message().find(field.name() + ": is -4711, must be within"),
+                absl::string_view::npos)
+          << parsed.status();
+    }
+  }
+}
+
+TEST(ProfileFile, EveryNumberHasItsRange) {
+  expect_bounded(*v1::PrinterProfile::descriptor(), "{\"printer\": {", "}}");
+  expect_bounded(*v1::MaterialProfile::descriptor(), "{\"material\": {", "}}");
+}
+
+TEST(ProfileFile, ADamagedFileIsReadOrRefusedWithItsPlaceAndNothingElse) {
+  std::mt19937 random(3);
+  const std::string whole = kPrinter;
+  const std::string pieces = "{}[]\",:0.-eE\\ nul\xff\n";
+  for (int round = 0; round < 5000; ++round) {
+    std::string damaged = whole;
+    for (int k = 0; k < 3; ++k) damaged[random() % damaged.size()] = pieces[random() % pieces.size()];
+    damaged.resize(damaged.size() - (random() % 4 == 0 ? random() % damaged.size() : 0));
+    const auto parsed = parse_profile(damaged, "mine.json");
+    EXPECT_TRUE(parsed.ok() || std::string(parsed.status().message()).starts_with("mine.json:"))
+        << parsed.status();
   }
 }
 

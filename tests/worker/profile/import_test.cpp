@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "tests/fixture/temporary_folder.h"
 #include "worker/profile/import_profile.h"
@@ -244,6 +245,29 @@ TEST_F(Import, WhatIsNoFilamentIsSaid) {
   refused(R"({"name": "x", "density": "heavy"})", "f.json: density: is no number");
   refused(R"({"name": "x", "price": -1})", "f.json: price: is no number");
   refused("{\n\n", "f.json:3: not JSON");
+}
+
+TEST_F(Import, DamagedFilesAreReadOrRefusedAndNothingElse) {
+  std::mt19937 random(5);
+  const std::string cura =
+      R"({"name": "X", "inherits": "y", "overrides": {"machine_width": {"value": 100}}})";
+  const std::string pieces = "{}[]\",:=;0.x-\n\xff";
+  const auto damage = [&](std::string text) {
+    for (int k = 0; k < 4; ++k) text[random() % text.size()] = pieces[random() % pieces.size()];
+    return text;
+  };
+  int read = 0, refused = 0;
+  const auto count = [&](const Result<ProfileDraft>& draft) {
+    ++(draft.ok() ? read : refused);
+    EXPECT_TRUE(draft.ok() || !draft.error().message.empty());
+  };
+  for (int round = 0; round < 300; ++round) {
+    count(import("b.ini", damage(kBundle), "One"));
+    count(import("c.def.json", damage(cura)));
+    count(import_spoolman(folder_.write("f.json", damage(kFilament)), ""));
+  }
+  EXPECT_GT(read, 0);
+  EXPECT_GT(refused, 0);
 }
 
 TEST(IdFromName, IsWhatAProfileTakes) {
