@@ -1,56 +1,48 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/export/compact_mesh.h"
 
-#include <tbb/parallel_for.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
-#include <vector>
+#include <cmath>
+#include <optional>
 
+#include "worker/export/crossings.h"
 #include "worker/export/thin_out.h"
-#include "worker/export/untangle.h"
-#include "worker/skin/mend_edges.h"
 #include "worker/skin/triangle_tree.h"
 
 namespace skinframe {
 namespace {
 
-constexpr int kMostTries = 2;
-constexpr double kFirstTolerance = 0.1;  // root mean square, of the deviation; each try halves it
-constexpr std::size_t kMostProbes = 200'000;
+constexpr int kMostTries = 3;        // then it stays as it is
+constexpr double kFirstShare = 0.9;  // of the deviation that is allowed,
+constexpr double kLessShare = 0.7;   // and in each further try of the one before
+constexpr double kFewOuter = 0.25;   // of the triangles wanted: M as it is
 
-TriangleMesh part_of(const TriangleMesh& mesh, std::size_t first, std::size_t last) {
-  TriangleMesh part{mesh.vertices, {mesh.triangles.begin() + first, mesh.triangles.begin() + last}};
-  drop_unused_vertices(part);
-  return part;
+int end_of_vertices(const TriangleMesh& mesh, std::size_t triangles) {
+  int end = 0;
+  for (std::size_t t = 0; t < triangles; ++t)
+    for (int v : mesh.triangles[t]) end = std::max(end, v + 1);
+  return end;
 }
 
-// Every corner, since whoever checks the deviation looks at corners; and middles of the triangles, evenly
-// thinned to kMostProbes.
-std::vector<Eigen::Vector3d> probes_of(const TriangleMesh& mesh) {
-  const std::size_t stride = 1 + mesh.triangles.size() / kMostProbes;
-  std::vector<Eigen::Vector3d> probes = mesh.vertices;
-  for (std::size_t t = 0; t < mesh.triangles.size(); t += stride) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    probes.push_back((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0);
-  }
-  return probes;
-}
-
-double furthest(const std::vector<Eigen::Vector3d>& probes, const TriangleTree& tree) {
-  std::vector<double> distance(probes.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, probes.size(), 1024), [&](const auto& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i) distance[i] = tree.distance_mm(probes[i]);
-  });
-  return distance.empty() ? 0.0 : *std::max_element(distance.begin(), distance.end());
-}
-
-// Thinned, closed, without crossings of its own but where untangling leaves some: those are counted.
-void thin_part(TriangleMesh& part, std::size_t triangles, double tolerance, CompactMesh& compact,
-               const RunContext& context) {
-  if (part.triangles.size() <= triangles) return;
-  thin_out(part, triangles, tolerance);
-  compact.crossings_left += untangle(part, context).crossings_left;
+// Furthest of the mesh's corners and of the middles of its triangles.
+double furthest(const TriangleMesh& mesh, const TriangleTree& tree) {
+  const auto probe = [&](std::size_t i) -> Eigen::Vector3d {
+    if (i < mesh.vertices.size()) return mesh.vertices[i];
+    const auto& [a, b, c] = mesh.triangles[i - mesh.vertices.size()];
+    return (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0;
+  };
+  return tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, mesh.vertices.size() + mesh.triangles.size(), 1024), 0.0,
+      [&](const auto& range, double most) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+          most = std::max(most, tree.distance_mm(probe(i)));
+        return most;
+      },
+      [](double x, double y) { return std::max(x, y); });
 }
 
 }  // namespace
@@ -60,38 +52,37 @@ Result<CompactMesh> make_compact(const PrintableMesh& printable, std::size_t out
   SKINFRAME_CHECK(outer_triangles <= printable.mesh.triangles.size() && options.max_deviation_mm > 0.0);
   tbb::task_arena arena(std::max(1, context.threads));
   return arena.execute([&]() -> Result<CompactMesh> {
-    const TriangleTree full(printable.mesh);
-    const auto full_probes = probes_of(printable.mesh);
-    double tolerance = kFirstTolerance * options.max_deviation_mm;
-    for (int tries = 1;; ++tries) {
-      CompactMesh compact;
-      TriangleMesh outer = part_of(printable.mesh, 0, outer_triangles);
-      TriangleMesh cavity = part_of(printable.mesh, outer_triangles, printable.mesh.triangles.size());
-      const bool is_last = tries > kMostTries;  // then it stays as it is
-      if (!is_last) {
-        thin_part(outer, options.triangles / 2, tolerance, compact, context);
-        const std::size_t left = options.triangles - std::min(options.triangles, outer.triangles.size());
-        thin_part(cavity, std::max(left, options.triangles / 4), tolerance, compact, context);
+    CompactMesh compact;
+    ThinningOptions thinning;
+    thinning.triangles = options.triangles;
+    thinning.exact_stay = outer_triangles <= kFewOuter * options.triangles;
+    thinning.max_deviation_mm = kFirstShare * options.max_deviation_mm;
+    std::optional<TriangleTree> full;
+    if (printable.mesh.triangles.size() > options.triangles) full.emplace(printable.mesh);
+    thinning.original = full ? &*full : nullptr;
+    for (int tries = 0;; ++tries) {
+      compact.mesh = printable.mesh;
+      thinning.exact_vertices = end_of_vertices(compact.mesh, outer_triangles);
+      const bool stays = tries == kMostTries || compact.mesh.triangles.size() <= options.triangles;
+      if (stays) {
+        compact.outer_triangles = outer_triangles;
+        compact.deviation_mm = 0.0;
+        break;
       }
+      const Thinned thinned = thin_out(compact.mesh, thinning, context);
       if (context.cancelled()) return cancelled_error();
-      compact.outer_triangles = outer.triangles.size();
-      compact.mesh = std::move(outer);
-      const int first = static_cast<int>(compact.mesh.vertices.size());
-      compact.mesh.vertices.insert(compact.mesh.vertices.end(), cavity.vertices.begin(),
-                                   cavity.vertices.end());
-      for (const auto& t : cavity.triangles)
-        compact.mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-      if (!is_last) {
-        compact.deviation_mm = std::max(furthest(probes_of(compact.mesh), full),
-                                        furthest(full_probes, TriangleTree(compact.mesh)));
-        if (compact.deviation_mm > options.max_deviation_mm) {
-          tolerance *= 0.5;
-          continue;
-        }
-      }
-      compact.volume_mm3 = signed_volume(compact.mesh);
-      return compact;
+      compact.outer_triangles = std::count_if(compact.mesh.triangles.begin(), compact.mesh.triangles.end(),
+                                              [&](const auto& t) { return t[0] < thinned.exact_vertices; });
+      compact.deviation_mm = std::max(thinned.deviation_mm, furthest(compact.mesh, *full));
+      if (compact.deviation_mm <= options.max_deviation_mm) break;
+      thinning.max_deviation_mm *= kLessShare;
     }
+    full.reset();
+    if (context.cancelled()) return cancelled_error();
+    for (const auto& [s, t] : crossing_triangles(compact.mesh))
+      compact.crossings_left += static_cast<std::size_t>(std::max(s, t)) >= compact.outer_triangles;
+    compact.volume_mm3 = signed_volume(compact.mesh);
+    return compact;
   });
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The printable mesh with fewer triangles, for slicers that are slow on many: closed and edge-manifold like
-// the full one, and as near to it as the report says.
+// the full one, free of crossings that it does not have, and as near to it as the report says.
+//
+// Corners of M never move: where M is flat, or the deviation allows it, they go (thin_out.h). Where M has few
+// triangles beside what is wanted it stays as it is.
 #pragma once
 
 #include <cstddef>
@@ -20,12 +23,13 @@ struct CompactMesh {
   TriangleMesh mesh;  // the outer surface first
   std::size_t outer_triangles = 0;
   double volume_mm3 = 0.0;
-  double deviation_mm = 0.0;  // furthest that a corner or middle of either mesh was found from the other
-  int crossings_left = 0;     // pairs of triangles of the thinned parts that cut each other
+  // Furthest that a corner of either mesh, or a middle of a triangle of the compact one or of a large one of
+  // the full one, is from the other; never less than that, and never above what is allowed.
+  double deviation_mm = 0.0;
+  int crossings_left = 0;  // pairs of triangles that cut each other, but those where both are M's own
 };
 
-// outer_triangles: of the printable mesh, the first ones; they stay as they are while they are fewer than
-// half of what is wanted. Errors: kCancelled.
+// outer_triangles: of the printable mesh, the first ones, which use the first vertices. Errors: kCancelled.
 Result<CompactMesh> make_compact(const PrintableMesh& printable, std::size_t outer_triangles,
                                  const CompactOptions& options, const RunContext& context);
 

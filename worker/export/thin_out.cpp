@@ -1,229 +1,176 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/export/thin_out.h"
 
-#include <Eigen/Dense>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "worker/export/thin_block.h"
+#include "worker/export/triangle_gap.h"
+
 namespace skinframe {
 namespace {
 
-constexpr int kRounds = 8;
-constexpr double kLeastTurnCosine = 0.5;
-constexpr double kLeastRoundness =
-    0.1;  // 4 sqrt(3) area / sum of squared sides: 1 for an equilateral triangle
+// The quadric error allowed in each pass, in deviations: cheap collapses come first everywhere.
+constexpr std::array kPasses = {0.15, 0.4, 1.0, 1.0};
+constexpr double kTrianglesABlock = 6000.0;
+constexpr double kBlocksInSurface = 2.0;  // of n^3 boxes about a body, some 2 n^2 hold surface
+constexpr int kMostBlocksAcross = 24;
+constexpr double kBlockGapMm = 1e-4;  // between what two blocks may write
+constexpr double kLargeInDeviations = 4.0;
 
-// x^T A x + 2 b x + c: the sum of squared distances of x to n planes.
-struct Quadric {
-  Eigen::Matrix3f a = Eigen::Matrix3f::Zero();
-  Eigen::Vector3f b = Eigen::Vector3f::Zero();
-  float c = 0.0f;
-  float n = 0.0f;
-
-  void operator+=(const Quadric& q) {
-    a += q.a;
-    b += q.b;
-    c += q.c;
-    n += q.n;
-  }
-};
-
-Eigen::Vector3d normal_of(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
-  return (b - a).cross(c - a);
-}
-
-class Thinning {
+// Boxes of one width that fill space, numbered within the mesh's box.
+class Boxes {
  public:
-  Thinning(TriangleMesh& mesh)
-      : mesh_(mesh), quadrics_(mesh.vertices.size()), alive_(mesh.triangles.size(), 1) {
-    left_ = mesh.triangles.size();
-    for (const auto& t : mesh_.triangles) add_plane(t);
+  Boxes(const TriangleMesh& mesh, std::size_t triangles, int pass) {
+    const BoundingBox box = bounding_box(mesh);
+    const double across = std::sqrt(static_cast<double>(triangles) / kTrianglesABlock / kBlocksInSurface);
+    const int n = std::clamp(static_cast<int>(std::lround(across)), 1, kMostBlocksAcross);
+    width_ = 1.01 * box.extent().maxCoeff() / n + 1.0;
+    // Seams of one pass lie within boxes of the next: thirds do not meet again for three passes.
+    low_ = box.min.array() - 0.005 * width_ - (n > 1 ? width_ * (pass % 3) / 3.0 : 0.0);
+    for (int k = 0; k < 3; ++k) counts_[k] = 1 + static_cast<int>((box.max[k] - low_[k]) / width_);
   }
 
-  void run(std::size_t triangles, double tolerance) {
-    for (int round = 1; round <= kRounds && left_ > triangles; ++round) {
-      const double share = static_cast<double>(round) / kRounds;
-      link_triangles();
-      collapse_round(tolerance * tolerance * share * share, triangles);
-      drop_dead();
-    }
-    drop_unused_vertices();
+  std::array<int, 3> cell(const Eigen::Vector3d& p) const {
+    std::array<int, 3> at{};
+    for (int k = 0; k < 3; ++k)
+      at[k] = std::clamp(static_cast<int>((p[k] - low_[k]) / width_), 0, counts_[k] - 1);
+    return at;
+  }
+  int number(const std::array<int, 3>& c) const { return (c[0] * counts_[1] + c[1]) * counts_[2] + c[2]; }
+  int count() const { return counts_[0] * counts_[1] * counts_[2]; }
+  Eigen::AlignedBox3d box(int number) const {
+    const Eigen::Vector3d at(number / counts_[2] / counts_[1], number / counts_[2] % counts_[1],
+                             number % counts_[2]);
+    const Eigen::Vector3d low = low_ + width_ * at;
+    return {low.array() + kBlockGapMm, low.array() + width_ - kBlockGapMm};
   }
 
  private:
-  // A vertex's quadric has the vertex itself as its origin, so that floats are enough.
-  void add_plane(const std::array<int, 3>& t) {
-    const Eigen::Vector3d n =
-        normal_of(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]).stableNormalized();
-    const Eigen::Vector3f m = n.cast<float>();
-    for (int v : t) {
-      quadrics_[v].a += m * m.transpose();  // the plane goes through the vertex itself: b = c = 0
-      quadrics_[v].n += 1.0f;
-    }
-  }
-
-  // The quadric of `v`, moved to the origin `o`.
-  Quadric about(int v, const Eigen::Vector3d& o) const {
-    const Eigen::Vector3f d = (o - mesh_.vertices[v]).cast<float>();
-    Quadric q = quadrics_[v];
-    q.c += d.dot(q.a * d) + 2.0f * q.b.dot(d);
-    q.b += q.a * d;
-    return q;
-  }
-
-  void link_triangles() {
-    first_.assign(mesh_.vertices.size() + 1, 0);
-    for (const auto& t : mesh_.triangles) {
-      for (int v : t) ++first_[v + 1];
-    }
-    for (std::size_t v = 0; v + 1 < first_.size(); ++v) first_[v + 1] += first_[v];
-    around_.resize(3 * mesh_.triangles.size());
-    std::vector<int> next(first_.begin(), first_.end() - 1);
-    for (int t = 0; t < static_cast<int>(mesh_.triangles.size()); ++t) {
-      for (int v : mesh_.triangles[t]) around_[next[v]++] = t;
-    }
-    touched_.assign(mesh_.vertices.size(), 0);
-  }
-
-  void collapse_round(double most, std::size_t triangles) {
-    for (std::size_t t = 0; t < mesh_.triangles.size() && left_ > triangles; ++t) {
-      for (int k = 0; k < 3 && alive_[t]; ++k) {
-        const int u = mesh_.triangles[t][k], v = mesh_.triangles[t][(k + 1) % 3];
-        if (u < v && !touched_[u] && !touched_[v]) try_collapse(u, v, most);
-      }
-    }
-  }
-
-  template <class Visit>
-  void for_each_triangle(int v, Visit visit) const {
-    for (int i = first_[v]; i < first_[v + 1]; ++i) {
-      if (alive_[around_[i]]) visit(around_[i]);
-    }
-  }
-
-  void try_collapse(int u, int v, double most) {
-    const Eigen::Vector3d middle = 0.5 * (mesh_.vertices[u] + mesh_.vertices[v]);
-    Quadric q = about(u, middle);
-    q += about(v, middle);
-    if (q.c < 0.0f) q.c = 0.0f;
-    most *= q.n;
-    Eigen::Vector3f x = Eigen::Vector3f::Zero();
-    if (q.c > most) {
-      // The middle is too far off: the best place there is, held near the edge where that is not unique.
-      Eigen::Matrix3f a = q.a;
-      a.diagonal().array() += 1e-3f * a.trace();
-      x = -a.ldlt().solve(q.b);
-      const float length = static_cast<float>((mesh_.vertices[u] - mesh_.vertices[v]).norm());
-      if (!(x.norm() <= length)) return;
-      if (q.c + x.dot(q.a * x) + 2.0f * q.b.dot(x) > most) return;
-    }
-    const Eigen::Vector3d place = (middle + x.cast<double>()).cast<float>().cast<double>();
-    if (!keeps_manifold(u, v) || !keeps_shape(u, v, place) || !keeps_shape(v, u, place)) return;
-
-    // Triangles keep their numbers until the round ends: the lists about all others stay true, those about u
-    // do not.
-    touched_[u] = touched_[v] = 1;
-    for_each_triangle(v, [&](int t) {
-      auto& corners = mesh_.triangles[t];
-      if (std::find(corners.begin(), corners.end(), u) != corners.end()) {
-        alive_[t] = 0;
-        --left_;
-      } else {
-        std::replace(corners.begin(), corners.end(), v, u);
-      }
-    });
-    mesh_.vertices[u] = place;
-    Quadric moved = q;
-    moved.b += q.a * x;
-    moved.c = std::max(0.0f, q.c + x.dot(q.a * x) + 2.0f * q.b.dot(x));
-    quadrics_[u] = moved;
-  }
-
-  // Two vertices may become one when they share exactly two neighbours, and the surface is a disc about each.
-  bool keeps_manifold(int u, int v) {
-    neighbours(u, near_u_);
-    neighbours(v, near_v_);
-    int shared = 0;
-    for (int w : near_u_) shared += std::binary_search(near_v_.begin(), near_v_.end(), w);
-    const auto is_disc = [&](int w, const std::vector<int>& near) {
-      std::size_t triangles = 0;
-      for_each_triangle(w, [&](int) { ++triangles; });
-      return near.size() == triangles;
-    };
-    return shared == 2 && is_disc(u, near_u_) && is_disc(v, near_v_) && near_u_.size() + near_v_.size() > 8;
-  }
-
-  void neighbours(int v, std::vector<int>& near) const {
-    near.clear();
-    for_each_triangle(v, [&](int t) {
-      for (int w : mesh_.triangles[t]) {
-        if (w != v) near.push_back(w);
-      }
-    });
-    std::sort(near.begin(), near.end());
-    near.erase(std::unique(near.begin(), near.end()), near.end());
-  }
-
-  bool keeps_shape(int moved, int gone, const Eigen::Vector3d& place) const {
-    bool good = true;
-    for_each_triangle(moved, [&](int t) {
-      const auto& corners = mesh_.triangles[t];
-      if (!good || std::find(corners.begin(), corners.end(), gone) != corners.end()) return;
-      std::array<Eigen::Vector3d, 3> p;
-      for (int k = 0; k < 3; ++k) p[k] = mesh_.vertices[corners[k]];
-      const Eigen::Vector3d before = normal_of(p[0], p[1], p[2]);
-      for (int k = 0; k < 3; ++k) {
-        if (corners[k] == moved) p[k] = place;
-      }
-      const Eigen::Vector3d after = normal_of(p[0], p[1], p[2]);
-      const double sides =
-          (p[1] - p[0]).squaredNorm() + (p[2] - p[1]).squaredNorm() + (p[0] - p[2]).squaredNorm();
-      good = after.dot(before) >= kLeastTurnCosine * after.norm() * before.norm() &&
-             2.0 * std::sqrt(3.0) * after.norm() >= kLeastRoundness * sides;
-    });
-    return good;
-  }
-
-  void drop_dead() {
-    std::size_t used = 0;
-    for (std::size_t t = 0; t < mesh_.triangles.size(); ++t) {
-      if (alive_[t]) mesh_.triangles[used++] = mesh_.triangles[t];
-    }
-    mesh_.triangles.resize(used);
-    alive_.assign(used, 1);
-  }
-
-  void drop_unused_vertices() {
-    std::vector<int> place(mesh_.vertices.size(), -1);
-    for (const auto& t : mesh_.triangles) {
-      for (int v : t) place[v] = 0;
-    }
-    int used = 0;
-    for (std::size_t v = 0; v < place.size(); ++v) {
-      if (place[v] < 0) continue;
-      place[v] = used;
-      mesh_.vertices[used++] = mesh_.vertices[v];
-    }
-    mesh_.vertices.resize(used);
-    for (auto& t : mesh_.triangles) {
-      for (int& v : t) v = place[v];
-    }
-  }
-
-  TriangleMesh& mesh_;
-  std::vector<Quadric> quadrics_;
-  std::vector<char> alive_;
-  std::size_t left_ = 0;
-  std::vector<int> first_, around_;
-  std::vector<char> touched_;  // the two ends of each collapse of this round
-  std::vector<int> near_u_, near_v_;
+  double width_ = 1.0;
+  Eigen::Vector3d low_;
+  std::array<int, 3> counts_{};
 };
+
+std::vector<ThinningBlock> blocks_of(const TriangleMesh& mesh, const Boxes& boxes) {
+  std::vector<ThinningBlock> blocks(boxes.count());
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    std::array<int, 3> low{}, high{};
+    for (int k = 0; k < 3; ++k) {
+      const auto c = boxes.cell(mesh.vertices[mesh.triangles[t][k]]);
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = k == 0 ? c[axis] : std::min(low[axis], c[axis]);
+        high[axis] = k == 0 ? c[axis] : std::max(high[axis], c[axis]);
+      }
+    }
+    if (low == high) {
+      blocks[boxes.number(low)].own.push_back(t);
+      continue;
+    }
+    for (int x = low[0]; x <= high[0]; ++x)
+      for (int y = low[1]; y <= high[1]; ++y)
+        for (int z = low[2]; z <= high[2]; ++z) blocks[boxes.number({x, y, z})].beside.push_back(t);
+  }
+  for (int b = 0; b < boxes.count(); ++b) blocks[b].box = boxes.box(b);
+  std::erase_if(blocks, [](const ThinningBlock& b) { return b.own.empty(); });
+  return blocks;
+}
+
+// All corners, each bound to one of its triangles, and the middles of large triangles.
+std::vector<SurfacePoint> points_of(const TriangleMesh& mesh, double large_mm) {
+  std::vector<SurfacePoint> points;
+  std::vector<char> done(mesh.vertices.size(), 0);
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    const auto &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
+    const Eigen::Vector3f normal = (q - p).cross(r - p).stableNormalized().cast<float>();
+    for (int v : {a, b, c}) {
+      if (!std::exchange(done[v], 1)) points.push_back({mesh.vertices[v].cast<float>(), normal, t});
+    }
+    if (std::max({(p - q).squaredNorm(), (q - r).squaredNorm(), (r - p).squaredNorm()}) > large_mm * large_mm)
+      points.push_back({((p + q + r) / 3.0).cast<float>(), normal, t});
+  }
+  return points;
+}
+
+void link_points(ThinningState& state) {
+  state.first_point.assign(state.mesh->triangles.size() + 1, 0);
+  for (const auto& p : state.points) ++state.first_point[p.triangle + 1];
+  for (std::size_t t = 0; t + 1 < state.first_point.size(); ++t)
+    state.first_point[t + 1] += state.first_point[t];
+  state.points_of.resize(state.points.size());
+  std::vector<int> next(state.first_point.begin(), state.first_point.end() - 1);
+  for (int i = 0; i < static_cast<int>(state.points.size()); ++i)
+    state.points_of[next[state.points[i].triangle]++] = i;
+}
+
+void drop_gone(ThinningState& state) {
+  auto& triangles = state.mesh->triangles;
+  std::vector<int> place(triangles.size(), -1);
+  int used = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    if (state.gone[t]) continue;
+    place[t] = used;
+    triangles[used++] = triangles[t];
+  }
+  triangles.resize(used);
+  for (auto& p : state.points) p.triangle = place[p.triangle];
+}
+
+double furthest_point(const ThinningState& state) {
+  const TriangleMesh& mesh = *state.mesh;
+  const double squared = tbb::parallel_reduce(
+      tbb::blocked_range<std::size_t>(0, state.points.size(), 4096), 0.0,
+      [&](const auto& range, double most) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+          const auto& [a, b, c] = mesh.triangles[state.points[i].triangle];
+          most = std::max(most, squared_distance(state.points[i].place_mm.template cast<double>(),
+                                                 {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}));
+        }
+        return most;
+      },
+      [](double x, double y) { return std::max(x, y); });
+  return std::sqrt(squared);
+}
 
 }  // namespace
 
-void thin_out(TriangleMesh& mesh, std::size_t triangles, double tolerance_mm) {
-  if (mesh.triangles.size() > triangles) Thinning(mesh).run(triangles, tolerance_mm);
+Thinned thin_out(TriangleMesh& mesh, const ThinningOptions& options, const RunContext& context) {
+  SKINFRAME_CHECK(options.max_deviation_mm > 0.0);
+  if (mesh.triangles.size() <= options.triangles) return {0.0, options.exact_vertices};
+  ThinningState state;
+  state.mesh = &mesh;
+  state.exact_vertices = options.exact_vertices;
+  state.exact_stay = options.exact_stay;
+  state.original = options.original;
+  state.points = points_of(mesh, kLargeInDeviations * options.max_deviation_mm);
+  for (int pass = 0; pass < static_cast<int>(kPasses.size()); ++pass) {
+    const std::size_t left = mesh.triangles.size();
+    if (left <= options.triangles || context.cancelled()) break;
+    const double share = static_cast<double>(options.triangles) / static_cast<double>(left);
+    const auto blocks = blocks_of(mesh, Boxes(mesh, left, pass));
+    state.gone.assign(left, 0);
+    link_points(state);
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+      const auto least = static_cast<std::size_t>(share * static_cast<double>(blocks[b].own.size()));
+      thin_block(state, blocks[b],
+                 {kPasses[pass] * options.max_deviation_mm, options.max_deviation_mm, least});
+    });
+    drop_gone(state);
+  }
+  Thinned result{furthest_point(state), 0};
+  std::vector<char> used(options.exact_vertices, 0);
+  for (const auto& t : mesh.triangles)
+    for (int v : t)
+      if (v < options.exact_vertices) used[v] = 1;
+  result.exact_vertices = static_cast<int>(std::count(used.begin(), used.end(), 1));
+  drop_unused_vertices(mesh);
+  return result;
 }
 
 }  // namespace skinframe

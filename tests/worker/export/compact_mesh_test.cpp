@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/worker/skin/bodies.h"
 #include "worker/export/crossings.h"
 #include "worker/skin/mend_edges.h"
@@ -44,6 +46,34 @@ TEST(CompactMesh, TheDeviationComesBeforeTheTriangleCount) {
   ASSERT_TRUE(compact.ok());
   EXPECT_LE(compact->deviation_mm, 0.02);
   EXPECT_GT(compact->mesh.triangles.size(), 100u);
+}
+
+TEST(CompactMesh, CornersOfTheOuterSurfaceGoButNeverMove) {
+  const PrintableMesh full = hollow_ball();
+  const std::size_t outer = full.mesh.triangles.size() / 2;
+  const auto compact = make_compact(full, outer, {.triangles = 8000, .max_deviation_mm = 0.2}, RunContext{});
+  ASSERT_TRUE(compact.ok());
+  EXPECT_LT(compact->outer_triangles, outer);
+  std::set<std::array<double, 3>> corners;
+  for (const auto& v : full.mesh.vertices) corners.insert({v.x(), v.y(), v.z()});
+  for (std::size_t t = 0; t < compact->outer_triangles; ++t) {
+    for (int i : compact->mesh.triangles[t]) {
+      const auto& v = compact->mesh.vertices[i];
+      ASSERT_TRUE(corners.contains({v.x(), v.y(), v.z()}));
+    }
+  }
+}
+
+TEST(CompactMesh, IsTheSameAtAnyNumberOfThreads) {
+  const PrintableMesh full = hollow_ball();
+  RunContext one, two;
+  two.threads = 2;
+  const CompactOptions options{.triangles = 9000, .max_deviation_mm = 0.2};
+  const auto a = make_compact(full, full.mesh.triangles.size() / 2, options, one);
+  const auto b = make_compact(full, full.mesh.triangles.size() / 2, options, two);
+  ASSERT_TRUE(a.ok() && b.ok());
+  EXPECT_EQ(a->mesh.triangles, b->mesh.triangles);
+  EXPECT_EQ(a->mesh.vertices, b->mesh.vertices);
 }
 
 TEST(CompactMesh, AFewTrianglesStayAsTheyAre) {
