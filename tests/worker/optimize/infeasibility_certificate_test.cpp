@@ -17,6 +17,7 @@ using testing::chain;
 using testing::Egg;
 using testing::load_at;
 using testing::make_egg;
+using testing::pulled_chain;
 using testing::top_load;
 
 CertificateRequest request_for(const FrameProblem& problem) {
@@ -25,13 +26,6 @@ CertificateRequest request_for(const FrameProblem& problem) {
   for (std::size_t j = 0; j < request.box.lower_mm2.size(); ++j)
     request.start_mm2.push_back((request.box.lower_mm2[j] + request.box.upper_mm2[j]) / 2);
   return request;
-}
-
-FrameProblem pulled_chain(double force_n) {
-  FrameProblem problem = chain(3, 90);
-  problem.displacement_limit_mm = 0.05;
-  problem.load_cases = {load_at(problem, 3, {force_n, 0, 0})};
-  return problem;
 }
 
 // The largest force is gamma epsilon pi 25 / l.

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "tests/worker/mechanics/small_frames.h"
+#include "tests/worker/optimize/test_frames.h"
 #include "worker/optimize/optimize_frame.h"
 
 namespace skinframe {
@@ -15,6 +16,7 @@ using Eigen::Vector3d;
 using std::numbers::pi;
 using testing::bare_problem;
 using testing::load_at;
+using testing::ten_bar_truss;
 
 OptimizeResult laid_out(const FrameProblem& problem,
                         OptimizeOptions::Order order = OptimizeOptions::Order::kTight) {
@@ -24,21 +26,6 @@ OptimizeResult laid_out(const FrameProblem& problem,
   auto result = optimize_frame(problem, options, context);
   EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
   return std::move(result).value();
-}
-
-// The ten-bar truss in inches, kips, ksi: stress limit 25, area at least 0.1 where a strut is there.
-FrameProblem ten_bar_truss() {
-  FrameProblem problem =
-      bare_problem({{720, 0, 360}, {720, 0, 0}, {360, 0, 360}, {360, 0, 0}, {0, 0, 360}, {0, 0, 0}},
-                   {{4, 2}, {2, 0}, {5, 3}, {3, 1}, {2, 3}, {0, 1}, {4, 3}, {5, 2}, {2, 1}, {3, 0}});
-  problem.element = ElementModel::kAxial;
-  problem.material.tensile_modulus_mpa = 1e4;
-  problem.material.tensile_strength_mpa = 25;
-  for (RadiusBounds& b : problem.bounds) b = {std::sqrt(0.1 / pi), 5};
-  for (int i = 0; i < 6; ++i) problem.fixed[i] = {i >= 4, true, i >= 4};
-  problem.load_cases = {load_at(problem, 1, {0, 0, -100})};
-  problem.load_cases[0].force_n[3] = {0, 0, -100};
-  return problem;
 }
 
 // With struts that may go: areas 8, 8, 4 on three bars of 360 in and 4 sqrt 2 on three diagonals, 15840 in3.

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "tests/worker/mechanics/small_frames.h"
+#include "tests/worker/optimize/test_frames.h"
 #include "worker/optimize/optimize_frame.h"
 
 namespace skinframe {
@@ -15,16 +16,9 @@ using std::numbers::pi;
 using testing::bare_problem;
 using testing::chain;
 using testing::load_at;
+using testing::size_only;
+using testing::ten_bar_truss;
 using testing::two_strut_truss;
-
-OptimizeResult size_only(const FrameProblem& problem) {
-  OptimizeOptions options;
-  options.relaxed = options.topology = options.geometry = false;
-  RunContext context;
-  auto result = optimize_frame(problem, options, context);
-  EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
-  return std::move(result).value();
-}
 
 double area(double radius) { return pi * radius * radius; }
 
@@ -178,20 +172,8 @@ TEST(SizeOpt, BalanceOutOfReachIsNamed) {
   EXPECT_LT(r.evaluation.balance_margin_mm, 0);
 }
 
-// The ten-bar truss of the textbooks (in inches, kips, ksi; stress limit 25, area at least 0.1): 1593.2 lb at
-// 0.1 lb/in3.
 TEST(SizeOpt, TenBarTrussReachesThePublishedStressOptimum) {
-  FrameProblem problem =
-      bare_problem({{720, 0, 360}, {720, 0, 0}, {360, 0, 360}, {360, 0, 0}, {0, 0, 360}, {0, 0, 0}},
-                   {{4, 2}, {2, 0}, {5, 3}, {3, 1}, {2, 3}, {0, 1}, {4, 3}, {5, 2}, {2, 1}, {3, 0}});
-  problem.element = ElementModel::kAxial;
-  problem.material.tensile_modulus_mpa = 1e4;
-  problem.material.tensile_strength_mpa = 25;
-  for (RadiusBounds& b : problem.bounds) b = {std::sqrt(0.1 / pi), 5};
-  for (int i = 0; i < 6; ++i) problem.fixed[i] = {i >= 4, true, i >= 4};
-  problem.load_cases = {load_at(problem, 1, {0, 0, -100})};
-  problem.load_cases[0].force_n[3] = {0, 0, -100};
-  const OptimizeResult r = size_only(problem);
+  const OptimizeResult r = size_only(ten_bar_truss());
   EXPECT_EQ(r.reason, Termination::kOptimal);
   EXPECT_NEAR(0.1 * r.size.volume_mm3, 1593.2, 0.05);
   EXPECT_NEAR(r.evaluation.max_axial_ratio, 1, 1e-5);

@@ -24,6 +24,7 @@ using testing::chain;
 using testing::Egg;
 using testing::load_at;
 using testing::make_egg;
+using testing::pulled_chain;
 using testing::top_load;
 
 double area(double radius) { return pi * radius * radius; }
@@ -33,13 +34,6 @@ SizedFrame sized(const FrameProblem& problem, const OptimizeOptions& options = {
   RunContext context;
   Session session(options, context);
   return size_frame(problem, {}, session, effort);
-}
-
-FrameProblem pulled_chain(double force_n) {
-  FrameProblem problem = chain(3, 90);
-  problem.displacement_limit_mm = 0.05;
-  problem.load_cases = {load_at(problem, 3, {force_n, 0, 0})};
-  return problem;
 }
 
 // Two struts of length l, one below the other, that carry nothing but themselves. With c = rho g l^2 / gamma

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/worker/optimize/test_frames.h"
 
+#include <gtest/gtest.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <set>
 
 #include "tests/worker/fixture/geodesic_sphere.h"
+#include "tests/worker/mechanics/small_frames.h"
 
 namespace skinframe::testing {
 namespace {
@@ -135,6 +139,36 @@ std::vector<HalfPlane> base_hull(const Frame& frame, double margin_mm) {
       if (edge) hull.push_back({normal, normal.dot(points[i]) - margin_mm});
     }
   return hull;
+}
+
+FrameProblem pulled_chain(double force_n) {
+  FrameProblem problem = chain(3, 90);
+  problem.displacement_limit_mm = 0.05;
+  problem.load_cases = {load_at(problem, 3, {force_n, 0, 0})};
+  return problem;
+}
+
+FrameProblem ten_bar_truss() {
+  FrameProblem problem =
+      bare_problem({{720, 0, 360}, {720, 0, 0}, {360, 0, 360}, {360, 0, 0}, {0, 0, 360}, {0, 0, 0}},
+                   {{4, 2}, {2, 0}, {5, 3}, {3, 1}, {2, 3}, {0, 1}, {4, 3}, {5, 2}, {2, 1}, {3, 0}});
+  problem.element = ElementModel::kAxial;
+  problem.material.tensile_modulus_mpa = 1e4;
+  problem.material.tensile_strength_mpa = 25;
+  for (RadiusBounds& b : problem.bounds) b = {std::sqrt(0.1 / std::numbers::pi), 5};
+  for (int i = 0; i < 6; ++i) problem.fixed[i] = {i >= 4, true, i >= 4};
+  problem.load_cases = {load_at(problem, 1, {0, 0, -100})};
+  problem.load_cases[0].force_n[3] = {0, 0, -100};
+  return problem;
+}
+
+OptimizeResult size_only(const FrameProblem& problem) {
+  OptimizeOptions options;
+  options.relaxed = options.topology = options.geometry = false;
+  RunContext context;
+  auto result = optimize_frame(problem, options, context);
+  EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
+  return std::move(result).value();
 }
 
 }  // namespace skinframe::testing

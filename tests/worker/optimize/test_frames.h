@@ -3,6 +3,7 @@
 #pragma once
 
 #include "worker/mechanics/frame_problem.h"
+#include "worker/optimize/optimize_frame.h"
 
 namespace skinframe::testing {
 
@@ -19,6 +20,16 @@ struct Egg {
   double skin_thickness_mm = 1.0;
 };
 FrameProblem make_egg(const Egg& egg);
+
+// Three struts in a line of 90 mm, fixed at one end, pulled at the other; displacement limit 0.05 mm.
+FrameProblem pulled_chain(double force_n);
+
+// The ten-bar truss of the textbooks in inches, kips and ksi: stress limit 25, areas from 0.1 in2. The least
+// weight at 0.1 lb/in3 is 1593.2 lb, and with displacements limited to 2 in as well 5060.9 lb.
+FrameProblem ten_bar_truss();
+
+// SizeOpt alone, expected to come to an end.
+OptimizeResult size_only(const FrameProblem& problem);
 
 // A load case of gravity and a force shared by the topmost nodes.
 LoadCase top_load(const FrameProblem& problem, const std::string& name, const Eigen::Vector3d& force_n);

@@ -23,17 +23,10 @@ using testing::chain;
 using testing::Egg;
 using testing::load_at;
 using testing::make_egg;
+using testing::size_only;
+using testing::ten_bar_truss;
 using testing::top_load;
 using testing::two_strut_truss;
-
-OptimizeResult sized(const FrameProblem& problem) {
-  OptimizeOptions options;
-  options.relaxed = options.topology = options.geometry = false;
-  RunContext context;
-  auto result = optimize_frame(problem, options, context);
-  EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
-  return std::move(result).value();
-}
 
 VolumeBound bound_of(const FrameProblem& problem, const std::vector<double>& start_mm2,
                      const std::vector<bool>& may_vanish = {}, double volume_mm3 = 1e300) {
@@ -110,21 +103,12 @@ TEST(VolumeLowerBound, KnowsTheStressLimitWhereNothingElseLimits) {
 // In inches, kips, ksi: displacements of 2 in, then stress 25 ksi. Published: 5060.9 lb with both, 1593.2 lb
 // with stress alone, at 0.1 lb/in3.
 TEST(VolumeLowerBound, StaysBelowThePublishedTenBarOptima) {
-  FrameProblem problem =
-      bare_problem({{720, 0, 360}, {720, 0, 0}, {360, 0, 360}, {360, 0, 0}, {0, 0, 360}, {0, 0, 0}},
-                   {{4, 2}, {2, 0}, {5, 3}, {3, 1}, {2, 3}, {0, 1}, {4, 3}, {5, 2}, {2, 1}, {3, 0}});
-  problem.element = ElementModel::kAxial;
-  problem.material.tensile_modulus_mpa = 1e4;
-  problem.material.tensile_strength_mpa = 25;
-  for (RadiusBounds& b : problem.bounds) b = {std::sqrt(0.1 / pi), 5};
-  for (int i = 0; i < 6; ++i) problem.fixed[i] = {i >= 4, true, i >= 4};
-  problem.load_cases = {load_at(problem, 1, {0, 0, -100})};
-  problem.load_cases[0].force_n[3] = {0, 0, -100};
+  FrameProblem problem = ten_bar_truss();
   const double of_stress = 0.1 * bound_of(problem, uniform(problem, 10)).value_mm3;
   EXPECT_LE(of_stress, 1593.2);
   EXPECT_GT(of_stress, 0.9 * 1593.2);
   problem.displacement_limit_mm = 2;
-  const OptimizeResult both = sized(problem);
+  const OptimizeResult both = size_only(problem);
   const double of_both = 0.1 * bound_of(problem, areas_of(both.radii_mm)).value_mm3;
   EXPECT_LE(of_both, 0.1 * both.size.volume_mm3);
   EXPECT_GT(of_both, 0.7 * 5060.9) << "two loaded nodes, of which one alone reaches its limit";
@@ -133,7 +117,7 @@ TEST(VolumeLowerBound, StaysBelowThePublishedTenBarOptima) {
 TEST(VolumeLowerBound, EnclosesTheOptimumOfFramesWithinAFewPercent) {
   for (const Eigen::Vector3d& force : {Eigen::Vector3d(0, 20, 0), Eigen::Vector3d(20, 0, -10)}) {
     const FrameProblem problem = loaded_egg(force);
-    const OptimizeResult r = sized(problem);
+    const OptimizeResult r = size_only(problem);
     ASSERT_EQ(r.reason, Termination::kOptimal);
     const double bound = bound_of(problem, areas_of(r.radii_mm), {}, r.size.volume_mm3).value_mm3;
     EXPECT_LE(bound, r.size.volume_mm3);
@@ -182,7 +166,7 @@ TEST(DualProof, HoldsForEveryFeasibleFrameWhateverTheField) {
 
 TEST(VolumeLowerBound, NoFeasibleFrameIsBelowIt) {
   const FrameProblem problem = loaded_egg();
-  const OptimizeResult r = sized(problem);
+  const OptimizeResult r = size_only(problem);
   const std::vector<double> best = areas_of(r.radii_mm);
   const AreaBox box = area_box(problem);
   const double bound = bound_of(problem, best).value_mm3;
@@ -211,7 +195,7 @@ TEST(VolumeLowerBound, WithStrutsThatMayVanishHoldsForReducedFrames) {
   auto reduced = optimize_frame(problem, options, context);
   ASSERT_TRUE(reduced.ok());
   ASSERT_LT(reduced->topology.struts, reduced->size.struts);
-  const double bound = bound_of(problem, areas_of(sized(problem).radii_mm), removable).value_mm3;
+  const double bound = bound_of(problem, areas_of(size_only(problem).radii_mm), removable).value_mm3;
   EXPECT_LE(bound, reduced->topology.volume_mm3);
   EXPECT_GT(bound, 0.8 * reduced->topology.volume_mm3);
 }
@@ -220,7 +204,7 @@ TEST(VolumeLowerBound, SeveralLoadCasesRaiseIt) {
   FrameProblem problem = loaded_egg();
   const double one = bound_of(problem, uniform(problem, 6)).value_mm3;
   problem.load_cases.push_back(top_load(problem, "other", {20, 0, 0}));
-  const OptimizeResult r = sized(problem);
+  const OptimizeResult r = size_only(problem);
   const double two = bound_of(problem, areas_of(r.radii_mm)).value_mm3;
   EXPECT_GT(two, (1 + 1e-3) * one);
   EXPECT_LE(two, r.size.volume_mm3);

@@ -23,24 +23,17 @@ using testing::Egg;
 using testing::load_at;
 using testing::make_egg;
 using testing::OracleAnswer;
+using testing::size_only;
+using testing::ten_bar_truss;
 using testing::top_load;
 
 constexpr double kEqual = 1e-6;  // relative, of the two optima
 constexpr double kOracleRoom =
     1e-6;  // of the limits: Ipopt relaxes bounds by 1e-8 and stops at 1e-8, both scaled
 
-OptimizeResult sized(const FrameProblem& problem) {
-  OptimizeOptions options;
-  options.relaxed = options.topology = options.geometry = false;
-  RunContext context;
-  auto result = optimize_frame(problem, options, context);
-  EXPECT_TRUE(result.ok()) << (result.ok() ? "" : result.error().message);
-  return std::move(result).value();
-}
-
 // The two agree; returns ours.
 OptimizeResult expect_equal_optima(const FrameProblem& problem, bool every_strain = false) {
-  OptimizeResult ours = sized(problem);
+  OptimizeResult ours = size_only(problem);
   EXPECT_EQ(ours.reason, Termination::kOptimal) << ours.detail;
   const OracleAnswer oracle = ask_oracle(problem, every_strain);
   EXPECT_EQ(oracle.status, "optimal");
@@ -93,7 +86,7 @@ TEST(SizeOracle, TwoLoadCasesThatBothBind) {
   for (std::size_t k = 0; k < 2; ++k) {
     FrameProblem alone = problem;
     alone.load_cases = {problem.load_cases[k]};
-    EXPECT_LT(sized(alone).size.volume_mm3, 0.9999 * ours.size.volume_mm3) << k;
+    EXPECT_LT(size_only(alone).size.volume_mm3, 0.9999 * ours.size.volume_mm3) << k;
   }
 }
 
@@ -154,23 +147,8 @@ TEST(SizeOracle, SlendernessAboveTheUpperBound) {
   expect_equal_optima(problem);
 }
 
-// Inches, kips, ksi. y is the frame's z.
-FrameProblem ten_bar() {
-  FrameProblem problem =
-      bare_problem({{720, 0, 360}, {720, 0, 0}, {360, 0, 360}, {360, 0, 0}, {0, 0, 360}, {0, 0, 0}},
-                   {{4, 2}, {2, 0}, {5, 3}, {3, 1}, {2, 3}, {0, 1}, {4, 3}, {5, 2}, {2, 1}, {3, 0}});
-  problem.element = ElementModel::kAxial;
-  problem.material.tensile_modulus_mpa = 1e4;
-  problem.material.tensile_strength_mpa = 25;
-  for (RadiusBounds& b : problem.bounds) b = {std::sqrt(0.1 / std::numbers::pi), 5};
-  for (int i = 0; i < 6; ++i) problem.fixed[i] = {i >= 4, true, i >= 4};
-  problem.load_cases = {load_at(problem, 1, {0, 0, -100})};
-  problem.load_cases[0].force_n[3] = {0, 0, -100};
-  return problem;
-}
-
 TEST(SizeOracle, TenBarTrussWithStressLimits) {
-  const OptimizeResult ours = expect_equal_optima(ten_bar());
+  const OptimizeResult ours = expect_equal_optima(ten_bar_truss());
   EXPECT_NEAR(0.1 * ours.size.volume_mm3, 1593.2, 0.05);
 }
 
@@ -178,7 +156,7 @@ TEST(SizeOracle, TenBarTrussWithStressLimits) {
 // limited, which asks for at least that, and sqrt(2) in a component for at most what the same limit on the
 // components would.
 TEST(SizeOracle, TenBarTrussWithStressAndDisplacementLimits) {
-  FrameProblem problem = ten_bar();
+  FrameProblem problem = ten_bar_truss();
   problem.displacement_limit_mm = 2;
   const OptimizeResult ours = expect_equal_optima(problem);
   EXPECT_GE(0.1 * ours.size.volume_mm3, 5060.8);
@@ -190,7 +168,7 @@ TEST(SizeOracle, TenBarTrussWithStressAndDisplacementLimits) {
 TEST(SizeOracle, InfeasibleLoadIsInfeasibleForBoth) {
   FrameProblem problem = make_egg(Egg{.frequency = 2, .internal_nodes = 6});
   problem.load_cases = {top_load(problem, "side", {0, 5000, 0})};
-  EXPECT_EQ(sized(problem).reason, Termination::kInfeasible);
+  EXPECT_EQ(size_only(problem).reason, Termination::kInfeasible);
   EXPECT_NE(ask_oracle(problem).status, "optimal");
 }
 
