@@ -54,9 +54,13 @@ TEST(Catalog, HasFourMoreOfEachKindAndEveryPrintersDefaultMaterial) {
   }
 }
 
-TEST(Catalog, EveryBuiltInPrinterHasAllThatAJobNeeds) {
+TEST(Catalog, EveryBuiltInPrinterAndItsDefaultMaterialHaveAllThatAJobNeeds) {
   const Catalog catalog = built_in_catalog();
-  for (const auto& printer : catalog.printers()) EXPECT_EQ(missing_for_a_job(printer), "") << printer.id();
+  for (const auto& printer : catalog.printers()) {
+    EXPECT_EQ(missing_for_a_job(printer), "") << printer.id();
+    const auto* material = catalog.find_material(printer.default_material_id());
+    EXPECT_EQ(material == nullptr ? "" : missing_for_a_job(*material), "") << printer.id();
+  }
 }
 
 TEST(Catalog, WhatAJobNeedsAndTheProfileDoesNotKnowIsNamed) {
