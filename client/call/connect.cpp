@@ -7,23 +7,32 @@
 
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 namespace skinframe::client {
 
 Result<Connection> connect(const ConnectOptions& options) {
   if (options.address.empty())
     return Failure{FailureKind::kUsage, "the server's address is empty; give HOST:PORT"};
+  if (options.tls_cert.empty() != options.tls_key.empty())
+    return Failure{FailureKind::kUsage, "a TLS certificate and its key must be given together"};
+  if (!options.tls_cert.empty() && options.tls_ca.empty())
+    return Failure{FailureKind::kUsage, "a TLS certificate of the caller needs the authority's (--tls-ca)"};
   std::shared_ptr<grpc::ChannelCredentials> credentials = grpc::InsecureChannelCredentials();
   if (!options.tls_ca.empty()) {
-    std::ifstream in(options.tls_ca);
-    std::stringstream pem;
-    pem << in.rdbuf();
-    if (!in || pem.str().empty()) {
-      return Failure{FailureKind::kLocal,
-                     fmt::format("{}: no TLS certificate can be read there", options.tls_ca.string())};
-    }
     grpc::SslCredentialsOptions ssl;
-    ssl.pem_root_certs = pem.str();
+    for (const auto& [file, pem] :
+         {std::pair(&options.tls_ca, &ssl.pem_root_certs), std::pair(&options.tls_cert, &ssl.pem_cert_chain),
+          std::pair(&options.tls_key, &ssl.pem_private_key)}) {
+      if (file->empty()) continue;
+      std::ifstream in(*file);
+      std::stringstream text;
+      text << in.rdbuf();
+      *pem = text.str();
+      if (!in || pem->empty())
+        return Failure{FailureKind::kLocal,
+                       fmt::format("{}: no TLS certificate or key can be read there", file->string())};
+    }
     credentials = grpc::SslCredentials(ssl);
   }
   grpc::ChannelArguments arguments;
@@ -36,6 +45,7 @@ Result<Connection> connect(const ConnectOptions& options) {
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 1'000);
   Connection connection;
   connection.address = options.address;
+  connection.token = options.token;
   connection.channel = grpc::CreateCustomChannel(options.address, credentials, arguments);
   return connection;
 }

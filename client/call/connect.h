@@ -19,18 +19,23 @@ inline constexpr char kDefaultAddress[] = "127.0.0.1:7350";
 struct ConnectOptions {
   std::string address = kDefaultAddress;  // HOST:PORT
   std::filesystem::path tls_ca;           // PEM file of the certificate authority; empty: no TLS
+  std::filesystem::path tls_cert;  // PEM chain by which the server knows the caller; with tls_key, or none
+  std::filesystem::path tls_key;
+  std::string
+      token;  // by which the server knows the caller; empty: none. Without TLS the network can read it.
 };
 
 // A value to copy. Every call of the library ends soon after `stop` asks for it, with kInterrupted.
 struct Connection {
   std::shared_ptr<grpc::Channel> channel;
   std::string address;
+  std::string token;  // sent with each call
   Clock* clock = &system_clock();
   std::stop_token stop;
 
-  Connection with_stop(std::stop_token token) const {
+  Connection with_stop(std::stop_token when) const {
     Connection copy = *this;
-    copy.stop = std::move(token);
+    copy.stop = std::move(when);
     return copy;
   }
 };

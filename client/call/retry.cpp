@@ -15,18 +15,14 @@ constexpr std::chrono::milliseconds kLongestAskedDelay{30'000};
 
 // Trailing metadata "retry-after-ms" of a full queue.
 std::optional<std::chrono::milliseconds> asked_delay(const grpc::ClientContext& context) {
-  const auto& metadata = context.GetServerTrailingMetadata();
-  const auto it = metadata.find("retry-after-ms");
-  if (it == metadata.end()) return std::nullopt;
-  std::int64_t value = 0;
-  const auto [end, error] = std::from_chars(it->second.data(), it->second.data() + it->second.size(), value);
-  if (error != std::errc() || value < 0) return std::nullopt;
-  return std::min(std::chrono::milliseconds(std::min<std::int64_t>(value, 1'000'000)), kLongestAskedDelay);
+  const auto value = trailing_number(context, "retry-after-ms");
+  if (!value) return std::nullopt;
+  return std::min(std::chrono::milliseconds(std::min<std::int64_t>(*value, 1'000'000)), kLongestAskedDelay);
 }
 
-bool may_help(const grpc::Status& status, const RetryPolicy& policy) {
+bool may_help(const grpc::Status& status, const RetryPolicy& policy, bool delay_is_named) {
   return status.error_code() == grpc::StatusCode::UNAVAILABLE ||
-         (policy.queue_full && status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED);
+         (policy.queue_full && delay_is_named && status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED);
 }
 
 // gRPC's "failed to connect to all addresses; last error: UNKNOWN: ipv4:...: Connection refused" by its last
@@ -39,6 +35,17 @@ std::string last_part(const std::string& message) {
 grpc::Status interrupted() { return {grpc::StatusCode::CANCELLED, "interrupted"}; }
 
 }  // namespace
+
+std::optional<std::int64_t> trailing_number(const grpc::ClientContext& context, const char* key) {
+  const auto& metadata = context.GetServerTrailingMetadata();
+  const auto it = metadata.find(key);
+  if (it == metadata.end()) return std::nullopt;
+  std::int64_t value = 0;
+  const char* end = it->second.data() + it->second.size();
+  const auto [at, error] = std::from_chars(it->second.data(), end, value);
+  if (error != std::errc() || at != end || value < 0) return std::nullopt;
+  return value;
+}
 
 Backoff::Backoff(std::chrono::milliseconds first, std::chrono::milliseconds longest, std::uint64_t seed)
     : first_(first), longest_(longest), current_(first), random_(seed) {}
@@ -55,6 +62,7 @@ grpc::Status call_once(const Connection& connection, std::chrono::milliseconds d
                        const Attempt& attempt) {
   grpc::ClientContext context;
   context.set_deadline(std::chrono::system_clock::now() + deadline);
+  if (!connection.token.empty()) context.AddMetadata("authorization", "Bearer " + connection.token);
   const std::stop_callback cancel(connection.stop, [&] { context.TryCancel(); });
   return attempt(context);
 }
@@ -69,7 +77,7 @@ grpc::Status call_with_retries(const Connection& connection, const RetryPolicy& 
       if (answer.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED) asked = asked_delay(context);
       return answer;
     });
-    if (--left <= 0 || !may_help(status, policy)) return status;
+    if (--left <= 0 || !may_help(status, policy, asked.has_value())) return status;
     const auto delay = backoff.next();
     if (!connection.clock->wait(std::max(delay, asked.value_or(delay)), connection.stop)) break;
   }

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <random>
 
 #include "client/call/connect.h"
@@ -33,7 +34,7 @@ struct RetryPolicy {
   std::chrono::milliseconds first{100};        // delay after the first
   std::chrono::milliseconds longest{2000};     // delay at most
   std::chrono::milliseconds deadline{30'000};  // of one attempt
-  bool queue_full = false;                     // RESOURCE_EXHAUSTED too, after the delay the server names
+  bool queue_full = false;  // RESOURCE_EXHAUSTED too, where the server names a delay: not sooner than that
 };
 
 using Attempt = std::function<grpc::Status(grpc::ClientContext&)>;
@@ -45,6 +46,9 @@ grpc::Status call_with_retries(const Connection& connection, const RetryPolicy& 
 // One attempt under the connection's stop token.
 grpc::Status call_once(const Connection& connection, std::chrono::milliseconds deadline,
                        const Attempt& attempt);
+
+// A number, 0 or more, of the metadata behind a finished call's answer; nothing when it is not there.
+std::optional<std::int64_t> trailing_number(const grpc::ClientContext& context, const char* key);
 
 // A status that is not OK, as a sentence for people.
 Failure to_failure(const grpc::Status& status, const Connection& connection);

@@ -23,6 +23,9 @@ constexpr std::array<std::string_view, 2> kUnbuiltVerbs = {"render", "doctor"};
 // Verbs of the server with a part that runs here: `printers import FILE`.
 constexpr std::array<std::string_view, 2> kProfileVerbs = {"printers", "materials"};
 
+constexpr std::array<std::string_view, 5> kGlobalOptionsWithValue = {"--server", "--tls-ca", "--tls-cert",
+                                                                     "--tls-key", "--token"};
+
 template <class List>
 bool contains(const List& list, std::string_view word) {
   return std::find(list.begin(), list.end(), word) != list.end();
@@ -31,7 +34,7 @@ bool contains(const List& list, std::string_view word) {
 // Index of the first word that is neither a global option nor the value of one.
 std::optional<std::size_t> verb_index(const std::vector<std::string>& words) {
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] == "--server" || words[i] == "--tls-ca") {
+    if (contains(kGlobalOptionsWithValue, words[i])) {
       ++i;
     } else if (words[i].empty() || words[i][0] != '-') {
       return i;
@@ -63,6 +66,12 @@ class CommandLine {
         ->envname("SKINFRAME_SERVER")
         ->capture_default_str();
     app_.add_option("--tls-ca", global_.server.tls_ca, "PEM file of the certificate authority; turns TLS on");
+    app_.add_option("--tls-cert", global_.server.tls_cert,
+                    "PEM certificate chain by which the server knows you");
+    app_.add_option("--tls-key", global_.server.tls_key, "PEM private key of that certificate");
+    app_.add_option("--token", global_.server.token,
+                    "By which the server knows you; better by the environment")
+        ->envname("SKINFRAME_TOKEN");
     app_.add_flag("--json", global_.json, "Data as JSON on stdout");
     add_run();
     add_submit();

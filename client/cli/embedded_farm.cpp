@@ -138,8 +138,8 @@ Result<std::string> EmbeddedFarm::serve(std::promise<Result<std::string>>& start
   }
   const std::string threads = std::to_string(std::clamp(std::thread::hardware_concurrency(), 1U, 256U));
   const std::vector<std::string> worker_words = {
-      worker_path->string(), "--server", *address,     "--slots",       "1",
-      "--threads",           threads,    "--work-dir", folder_ / "work"};
+      worker_path->string(), "--server",       *address,  "--slots", "1", "--threads", threads,
+      "--work-dir",          folder_ / "work", "--drain", "0"};
   auto worker = BackgroundProcess::start(worker_words, worker_log);
   if (!worker) return worker.failure();
   started.set_value(*address);

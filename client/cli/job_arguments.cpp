@@ -99,6 +99,7 @@ void add_job_options(CLI::App& verb, JobArguments& a) {
   verb.add_option("--seed", a.seed, "Same seed, same result (default 1)");
   verb.add_option("--warm-start", a.warm_start,
                   "Start from the frame of that earlier JOB of the same mesh, wherever it still fits");
+  verb.add_flag("--no-reuse", a.no_reuse, "Run the job also where an earlier one has made the same already");
   verb.add_option("--label", a.labels, "KEY=VALUE, to find the job by; repeatable")->allow_extra_args(false);
   verb.add_option("--priority", a.priority, "-100 .. 100, higher runs earlier");
   verb.add_option("--deadline", a.deadline, "Give up after that time from submission: 90s, 15m, 2h");
@@ -108,6 +109,7 @@ Result<v1::SubmitJobRequest> to_request(const JobArguments& a) {
   v1::SubmitJobRequest request;
   request.set_request_id(a.request_id);
   request.set_validate_only(a.validate_only);
+  request.set_no_reuse(a.no_reuse);
   v1::JobSpec& spec = *request.mutable_spec();
   spec.set_mesh_name(mesh_name(a.mesh));
   if (a.printers.empty() && input_kind(a.mesh) == InputKind::kMesh) {

@@ -34,6 +34,7 @@ struct JobArguments {
   std::string request_id;
   std::string warm_start;  // an earlier job's id
   bool validate_only = false;
+  bool no_reuse = false;
 };
 
 // Adds FILE and all options of a job to a verb.

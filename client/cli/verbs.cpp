@@ -43,6 +43,12 @@ Result<v1::SubmitJobResponse> upload_and_submit(const Connection& connection, co
   return submit_job(connection, std::move(request));
 }
 
+void tell_reuse(const v1::Job& job) {
+  if (job.reused_job_id().empty()) return;
+  fmt::print(stderr, "not run: job {} asked for the same, and its result is this job's; --no-reuse runs it\n",
+             one_line(job.reused_job_id()));
+}
+
 ExitCode report_checks(const v1::SubmitJobResponse& response, bool json) {
   if (json) {
     print_json({{"valid", true}, {"checks", to_json(response)["checks"]}});
@@ -65,6 +71,7 @@ ExitCode run_on(EmbeddedFarm& farm, Interrupts& interrupts, const GlobalArgument
   const auto cause = [&farm] { return farm.failure(); };
   const auto submitted = upload_and_submit(*connection, arguments.job, request);
   if (!submitted) return tell(cause().value_or(submitted.failure()));
+  tell_reuse(submitted->job());
   return follow_job(*connection, interrupts, submitted->job().job_id(), {arguments.out, global.json, cause});
 }
 
@@ -148,6 +155,7 @@ ExitCode submit(const GlobalArguments& global, const SubmitArguments& arguments)
   if (!submitted) return tell(submitted.failure());
   if (request->validate_only()) return report_checks(*submitted, global.json);
   const std::string& id = submitted->job().job_id();
+  tell_reuse(submitted->job());
   if (arguments.watch) {
     fmt::print(stderr, "job {}\n", one_line(id));
     return follow_job(*connection, interrupts, id, {arguments.out, global.json});
@@ -175,6 +183,10 @@ ExitCode watch(const GlobalArguments& global, const std::string& job_id, std::in
   WatchOptions options;
   options.after_sequence = after_sequence;
   options.on_lost = [&] { display.say("the server does not answer; watching again as soon as it does"); };
+  options.on_thinned = [&](std::int64_t first, std::int64_t last) {
+    display.say(fmt::format(
+        "events {} to {} are gone: the server keeps the progress of an ended job for a while", first, last));
+  };
   const auto watched = watch_job(*connection, job_id, options, [&](const v1::JobEvent& event) {
     if (as_lines) {
       print_event(event, global.json);

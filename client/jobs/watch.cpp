@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <utility>
 
 #include "client/call/retry.h"
 #include "skinframe/v1/job.grpc.pb.h"
@@ -48,8 +49,20 @@ class Watch {
         leave = seen != Seen::kEvents;
       }
       if (leave || broken_) context.TryCancel();
-      return reader->Finish();
+      grpc::Status status = reader->Finish();
+      if (status.error_code() == grpc::StatusCode::OUT_OF_RANGE)
+        first_available_ = trailing_number(context, "first-available-sequence");
+      return status;
     });
+  }
+
+  // After a stream that ended OUT_OF_RANGE: goes on behind events that were thinned out. False: none were.
+  bool skip_thinned(const WatchOptions& options) {
+    const auto next = std::exchange(first_available_, std::nullopt);
+    if (!next || *next <= last_ + 1) return false;
+    options.on_thinned(last_ + 1, *next - 1);
+    last_ = *next - 1;
+    return true;
   }
 
   // Whether the job had ended with the last event seen: a stream that starts there ends without a word.
@@ -73,6 +86,7 @@ class Watch {
   std::int64_t last_;
   const EventHandler& handler_;
   std::optional<Failure> broken_;
+  std::optional<std::int64_t> first_available_;
 };
 
 }  // namespace
@@ -94,6 +108,7 @@ Done watch_job(const Connection& connection, const std::string& job_id, const Wa
     if (watch.broken()) return *watch.broken();
     if (seen == Seen::kFinalState || seen == Seen::kEnough) return done();
     if (connection.stop.stop_requested()) return Failure{FailureKind::kInterrupted, "interrupted"};
+    if (watch.skip_thinned(options)) continue;
     if (status.ok()) {
       const auto ended = watch.ended_already();
       if (ended && *ended) return done();

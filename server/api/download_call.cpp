@@ -6,16 +6,17 @@
 #include <algorithm>
 
 #include "server/api/answer.h"
+#include "server/api/caller.h"
 
 namespace skinframe::server {
 namespace {
 constexpr std::int64_t kChunkBytes = 256 * 1024;
 }
 
-DownloadCall::DownloadCall(ArtifactStore& artifacts, Executor& executor,
+DownloadCall::DownloadCall(const Parts& parts, const grpc::CallbackServerContext& context,
                            const v1::DownloadArtifactRequest& request)
-    : artifacts_(artifacts), executor_(executor) {
-  executor_.post([this, request] {
+    : parts_(parts), context_(context) {
+  parts_.executor.post([this, request] {
     if (auto status = open(request); !status.ok()) return Finish(to_grpc(status));
     send_next();
   });
@@ -23,7 +24,9 @@ DownloadCall::DownloadCall(ArtifactStore& artifacts, Executor& executor,
 
 absl::Status DownloadCall::open(const v1::DownloadArtifactRequest& request) {
   if (request.length() < 0) return absl::InvalidArgumentError("length must not be negative");
-  auto file = artifacts_.read(request.sha256());
+  const auto shelf = shelf_of(parts_, context_);
+  if (!shelf.ok()) return shelf.status();
+  auto file = shelf->store->read(request.sha256());
   if (!file.ok()) return file.status();
   file_ = *std::move(file);
   const auto size = file_.size();
@@ -51,7 +54,7 @@ void DownloadCall::send_next() {
 
 void DownloadCall::OnWriteDone(bool ok) {
   if (!ok) return Finish({grpc::StatusCode::CANCELLED, "the client hung up"});
-  executor_.post([this] { send_next(); });
+  parts_.executor.post([this] { send_next(); });
 }
 
 }  // namespace skinframe::server

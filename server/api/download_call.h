@@ -4,15 +4,16 @@
 
 #include <cstdint>
 
-#include "server/artifacts/artifact_store.h"
-#include "server/executor/executor.h"
+#include "server/api/parts.h"
+#include "server/artifacts/file.h"
 #include "skinframe/v1/artifact.grpc.pb.h"
 
 namespace skinframe::server {
 
 class DownloadCall final : public grpc::ServerWriteReactor<v1::DownloadArtifactResponse> {
  public:
-  DownloadCall(ArtifactStore& artifacts, Executor& executor, const v1::DownloadArtifactRequest& request);
+  DownloadCall(const Parts& parts, const grpc::CallbackServerContext& context,
+               const v1::DownloadArtifactRequest& request);
   void OnWriteDone(bool ok) override;
   void OnDone() override { delete this; }
 
@@ -20,8 +21,8 @@ class DownloadCall final : public grpc::ServerWriteReactor<v1::DownloadArtifactR
   absl::Status open(const v1::DownloadArtifactRequest& request);
   void send_next();
 
-  ArtifactStore& artifacts_;
-  Executor& executor_;
+  Parts parts_;
+  const grpc::CallbackServerContext& context_;  // there until OnDone
   File file_;
   std::int64_t at_ = 0;
   std::int64_t end_ = 0;  // first byte not wanted

@@ -2,6 +2,9 @@
 // skinframe.v1.JobService: translates, validates, delegates. What each call promises stands in job.proto.
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "server/api/parts.h"
 #include "skinframe/v1/job.grpc.pb.h"
 
@@ -29,9 +32,12 @@ class JobService final : public v1::JobService::CallbackService {
  private:
   absl::Status submit(grpc::CallbackServerContext& context, const v1::SubmitJobRequest& request,
                       v1::SubmitJobResponse& response);
-  absl::Status list(const v1::ListJobsRequest& request, v1::ListJobsResponse& response);
-  JobRecord new_record(const v1::SubmitJobRequest& request, const Catalog& catalog);
-  absl::Status take_warm_start(JobRecord& record);
+  absl::Status list(const std::string& tenant, const v1::ListJobsRequest& request,
+                    v1::ListJobsResponse& response);
+  JobRecord new_record(const v1::SubmitJobRequest& request, const std::string& tenant,
+                       const Catalog& catalog);
+  absl::Status take_warm_start(JobRecord& record, ArtifactStore& artifacts);
+  absl::StatusOr<std::optional<JobRecord>> find_reusable(const JobRecord& record, ArtifactStore& artifacts);
 
   Parts parts_;
 };

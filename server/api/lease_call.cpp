@@ -32,11 +32,12 @@ Milliseconds wait_of(const v1::LeaseRequest& request, const AttemptPolicy& polic
 
 }  // namespace
 
-grpc::ServerUnaryReactor* LeaseCall::start(const Parts& parts, const v1::LeaseRequest& request,
-                                           v1::LeaseResponse& response) {
+grpc::ServerUnaryReactor* LeaseCall::start(const Parts& parts, const absl::Status& permitted,
+                                           const v1::LeaseRequest& request, v1::LeaseResponse& response) {
   const std::shared_ptr<LeaseCall> call(new LeaseCall(parts, response));
   call->self_ = call;
-  if (auto status = validate_lease(request); !status.ok()) {
+  const absl::Status status = permitted.ok() ? validate_lease(request) : permitted;
+  if (!status.ok()) {
     call->Finish(to_grpc(status));
   } else {
     call->wait_at_desk(request);
@@ -68,7 +69,14 @@ void LeaseCall::OnCancel() {
 }
 
 void LeaseCall::answer(const absl::StatusOr<std::optional<JobRecord>>& leased) {
-  if (leased.ok() && leased->has_value()) {
+  bool hung_up = false;
+  {
+    const std::lock_guard lock(mutex_);
+    hung_up = cancelled_;
+  }
+  if (leased.ok() && leased->has_value() && hung_up) {
+    parts_.desk.undelivered(**leased);
+  } else if (leased.ok() && leased->has_value()) {
     *response_.mutable_assignment() = assignment_of(**leased, parts_.policy);
   }
   Finish(to_grpc(leased.status()));

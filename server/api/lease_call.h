@@ -15,9 +15,9 @@ namespace skinframe::server {
 
 class LeaseCall final : public grpc::ServerUnaryReactor {
  public:
-  // The call owns itself until gRPC is done with it.
-  static grpc::ServerUnaryReactor* start(const Parts& parts, const v1::LeaseRequest& request,
-                                         v1::LeaseResponse& response);
+  // The call owns itself until gRPC is done with it. permitted: whether the caller is a worker.
+  static grpc::ServerUnaryReactor* start(const Parts& parts, const absl::Status& permitted,
+                                         const v1::LeaseRequest& request, v1::LeaseResponse& response);
   void OnCancel() override;
   void OnDone() override;
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "server/artifacts/artifact_store.h"
+#include "server/artifacts/tenant_artifacts.h"
 #include "server/catalog/live_catalog.h"
 #include "server/events/watch_hub.h"
 #include "server/executor/executor.h"
@@ -13,12 +13,14 @@
 #include "server/jobs/job_id.h"
 #include "server/leases/lease_desk.h"
 #include "server/store/job_store.h"
+#include "server/tenants/tenant_directory.h"
 
 namespace skinframe::server {
 
 struct Parts {
   JobStore& store;
-  ArtifactStore& artifacts;
+  TenantArtifacts& artifacts;
+  const TenantDirectory& tenants;
   const LiveCatalog& catalog;
   WatchHub& hub;
   LeaseDesk& desk;

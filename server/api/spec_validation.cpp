@@ -11,6 +11,7 @@
 
 #include "server/artifacts/artifact_store.h"
 #include "server/jobs/job_id.h"
+#include "skinframe/v1/worker.pb.h"
 
 namespace skinframe::server {
 namespace {
@@ -230,6 +231,18 @@ absl::Status check_schedule(const v1::JobSpec& spec) {
   return absl::OkStatus();
 }
 
+// Maps in the order of their keys.
+std::string canonical_bytes(const google::protobuf::Message& message) {
+  std::string bytes;
+  {
+    google::protobuf::io::StringOutputStream stream(&bytes);
+    google::protobuf::io::CodedOutputStream coded(&stream);
+    coded.SetSerializationDeterministic(true);
+    message.SerializeToCodedStream(&coded);
+  }
+  return bytes;
+}
+
 }  // namespace
 
 absl::Status validate_spec(const v1::JobSpec& spec, const Catalog& catalog) {
@@ -280,15 +293,21 @@ absl::Status validate_request_id(std::string_view request_id) {
   return invalid("request_id must be 1 .. 64 of [A-Za-z0-9._-], or empty");
 }
 
-std::string digest_of(const v1::JobSpec& spec) {
-  std::string bytes;
-  {
-    google::protobuf::io::StringOutputStream stream(&bytes);
-    google::protobuf::io::CodedOutputStream coded(&stream);
-    coded.SetSerializationDeterministic(true);
-    spec.SerializeToCodedStream(&coded);
-  }
-  return sha256_hex(bytes);
+std::string digest_of(const v1::JobSpec& spec) { return sha256_hex(canonical_bytes(spec)); }
+
+std::string reuse_key_of(const JobRecord& record) {
+  v1::Assignment asked;
+  *asked.mutable_spec() = record.job.spec();
+  asked.mutable_spec()->clear_mesh_name();
+  asked.mutable_spec()->clear_labels();
+  asked.mutable_spec()->clear_priority();
+  asked.mutable_spec()->clear_deadline();
+  // An absent material is the printer's default: what counts is the profile that was chosen.
+  for (auto& printer : *asked.mutable_spec()->mutable_printers()) printer.clear_material_id();
+  for (const auto& printer : record.printers) *asked.add_printers() = printer;
+  for (const auto& material : record.materials) *asked.add_materials() = material;
+  for (const auto& file : record.warm_start_files) *asked.add_warm_start_files() = file;
+  return sha256_hex(std::string(SKINFRAME_VERSION) + "\n" + canonical_bytes(asked));
 }
 
 }  // namespace skinframe::server

@@ -2,16 +2,18 @@
 #include "server/api/upload_call.h"
 
 #include "server/api/answer.h"
+#include "server/api/caller.h"
 
 namespace skinframe::server {
 
-UploadCall::UploadCall(ArtifactStore& artifacts, Executor& executor, v1::UploadArtifactResponse& response)
-    : artifacts_(artifacts), executor_(executor), response_(response) {
+UploadCall::UploadCall(const Parts& parts, const grpc::CallbackServerContext& context,
+                       v1::UploadArtifactResponse& response)
+    : parts_(parts), context_(context), response_(response) {
   StartRead(&message_);
 }
 
 void UploadCall::OnReadDone(bool ok) {
-  executor_.post([this, ok] {
+  parts_.executor.post([this, ok] {
     if (!ok) return end(take_end());
     const absl::Status status = take_message();
     const bool there_already = status.ok() && upload_ == nullptr;
@@ -34,7 +36,12 @@ absl::Status UploadCall::take_header() {
   }
   header_ = message_.header();
   header_taken_ = true;
-  auto upload = artifacts_.upload(header_.sha256(), header_.size_bytes(), header_.offset());
+  const auto shelf = shelf_of(parts_, context_);
+  if (!shelf.ok()) return shelf.status();
+  if (absl::Status status = shelf->permit_upload(parts_, header_.sha256(), header_.size_bytes());
+      !status.ok())
+    return status;
+  auto upload = shelf->store->upload(header_.sha256(), header_.size_bytes(), header_.offset());
   if (!upload.ok()) return upload.status();
   upload_ = *std::move(upload);
   return absl::OkStatus();

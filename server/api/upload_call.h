@@ -5,16 +5,16 @@
 
 #include <memory>
 
-#include "server/artifacts/artifact_store.h"
+#include "server/api/parts.h"
 #include "server/artifacts/upload.h"
-#include "server/executor/executor.h"
 #include "skinframe/v1/artifact.grpc.pb.h"
 
 namespace skinframe::server {
 
 class UploadCall final : public grpc::ServerReadReactor<v1::UploadArtifactRequest> {
  public:
-  UploadCall(ArtifactStore& artifacts, Executor& executor, v1::UploadArtifactResponse& response);
+  UploadCall(const Parts& parts, const grpc::CallbackServerContext& context,
+             v1::UploadArtifactResponse& response);
   void OnReadDone(bool ok) override;
   void OnDone() override { delete this; }
 
@@ -24,8 +24,8 @@ class UploadCall final : public grpc::ServerReadReactor<v1::UploadArtifactReques
   absl::Status take_end();
   void end(const absl::Status& status);
 
-  ArtifactStore& artifacts_;
-  Executor& executor_;
+  Parts parts_;
+  const grpc::CallbackServerContext& context_;  // there until OnDone
   v1::UploadArtifactResponse& response_;
   v1::UploadArtifactRequest message_;
   v1::UploadArtifactRequest::Header header_;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "server/api/answer.h"
+#include "server/api/caller.h"
 #include "server/jobs/transitions.h"
 
 namespace skinframe::server {
@@ -13,18 +14,23 @@ namespace {
 constexpr int kPage = 64;
 }
 
-grpc::ServerWriteReactor<v1::JobEvent>* WatchCall::start(const Parts& parts, const std::string& job_id,
+grpc::ServerWriteReactor<v1::JobEvent>* WatchCall::start(const Parts& parts,
+                                                         grpc::CallbackServerContext& context,
+                                                         const std::string& job_id,
                                                          std::int64_t after_sequence) {
-  const std::shared_ptr<WatchCall> call(new WatchCall(parts, job_id, after_sequence));
+  const std::shared_ptr<WatchCall> call(new WatchCall(parts, context, job_id, after_sequence));
   call->self_ = call;
   parts.executor.post([call] { call->begin(); });
   return call.get();
 }
 
 void WatchCall::begin() {
+  const auto tenant = tenant_of(parts_, context_);
+  if (!tenant.ok()) return end(tenant.status());
   if (auto status = parts_.hub.subscribe(job_id_, shared_from_this()); !status.ok()) return end(status);
   const auto record = parts_.store.get(job_id_);
   if (!record.ok()) return end(record.status());
+  if (auto status = check_owner(*record, *tenant); !status.ok()) return end(status);
   const std::int64_t last = record->job.last_sequence();
   if (sequence_ < 0 || sequence_ > last) {
     return end(absl::OutOfRangeError(
@@ -57,11 +63,19 @@ void WatchCall::read_page() {
 
 void WatchCall::write_next() {
   if (stopped()) return;
+  if (page_[next_].sequence() != sequence_ + 1) return end_before(page_[next_]);
   {
     const std::lock_guard lock(mutex_);
     phase_ = Phase::kWriting;
   }
   StartWrite(&page_[next_]);
+}
+
+void WatchCall::end_before(const v1::JobEvent& next) {
+  context_.AddTrailingMetadata("first-available-sequence", std::to_string(next.sequence()));
+  end(absl::OutOfRangeError(
+      fmt::format("events {} to {} of job {} were progress and are thinned out; watch on after {}",
+                  sequence_ + 1, next.sequence() - 1, job_id_, next.sequence() - 1)));
 }
 
 void WatchCall::OnWriteDone(bool ok) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // One WatchJob stream. It reads the store page by page from its own sequence number and writes one event at a
 // time; when there is nothing more it rests until the hub wakes it. So it holds one page of memory however
-// slow its client is, and it can neither miss nor repeat an event.
+// slow its client is, and it can neither miss nor repeat an event. Where events were thinned out it ends and
+// says where it goes on: nobody takes a gap for the whole.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,9 @@ class WatchCall final : public grpc::ServerWriteReactor<v1::JobEvent>,
                         public std::enable_shared_from_this<WatchCall> {
  public:
   // The call owns itself until gRPC is done with it.
-  static grpc::ServerWriteReactor<v1::JobEvent>* start(const Parts& parts, const std::string& job_id,
+  static grpc::ServerWriteReactor<v1::JobEvent>* start(const Parts& parts,
+                                                       grpc::CallbackServerContext& context,
+                                                       const std::string& job_id,
                                                        std::int64_t after_sequence);
 
   void wake() override;
@@ -35,18 +38,21 @@ class WatchCall final : public grpc::ServerWriteReactor<v1::JobEvent>,
   // first.
   enum class Phase { kReading, kWriting, kResting, kEnded };
 
-  WatchCall(const Parts& parts, std::string job_id, std::int64_t after_sequence)
-      : parts_(parts), job_id_(std::move(job_id)), sequence_(after_sequence) {}
+  WatchCall(const Parts& parts, grpc::CallbackServerContext& context, std::string job_id,
+            std::int64_t after_sequence)
+      : parts_(parts), context_(context), job_id_(std::move(job_id)), sequence_(after_sequence) {}
 
   void begin();
   void read_page();
   void write_next();
+  void end_before(const v1::JobEvent& next);
   void read_later();
   void stop(const absl::Status& status);
   bool stopped();
   void end(const absl::Status& status);
 
   Parts parts_;
+  grpc::CallbackServerContext& context_;  // there until OnDone
   const std::string job_id_;
   std::int64_t sequence_;  // of the last event written
   std::vector<v1::JobEvent> page_;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "server/api/answer.h"
+#include "server/api/caller.h"
 #include "server/api/lease_call.h"
 #include "server/api/worker_validation.h"
 #include "server/jobs/decisions.h"
@@ -29,9 +30,9 @@ absl::Status gone_is_aborted(const absl::Status& status) {
 
 }  // namespace
 
-grpc::ServerUnaryReactor* WorkerService::Lease(grpc::CallbackServerContext*, const v1::LeaseRequest* request,
-                                               v1::LeaseResponse* response) {
-  return LeaseCall::start(parts_, *request, *response);
+grpc::ServerUnaryReactor* WorkerService::Lease(grpc::CallbackServerContext* context,
+                                               const v1::LeaseRequest* request, v1::LeaseResponse* response) {
+  return LeaseCall::start(parts_, permit_work(parts_, *context), *request, *response);
 }
 
 grpc::ServerUnaryReactor* WorkerService::Heartbeat(grpc::CallbackServerContext* context,
@@ -39,7 +40,11 @@ grpc::ServerUnaryReactor* WorkerService::Heartbeat(grpc::CallbackServerContext* 
                                                    v1::HeartbeatResponse* response) {
   return answer_on(
       parts_.executor, context,
-      [=, this] { return log_refusal(heartbeat(*request, *response), request->job_id(), "heartbeat"); },
+      [=, this] {
+        const absl::Status permitted = permit_work(parts_, *context);
+        return permitted.ok() ? log_refusal(heartbeat(*request, *response), request->job_id(), "heartbeat")
+                              : permitted;
+      },
       request->job_id());
 }
 
@@ -76,13 +81,20 @@ grpc::ServerUnaryReactor* WorkerService::Complete(grpc::CallbackServerContext* c
                                                   const v1::CompleteRequest* request, v1::CompleteResponse*) {
   return answer_on(
       parts_.executor, context,
-      [=, this] { return log_refusal(complete(*request), request->job_id(), "completion"); },
+      [=, this] {
+        const absl::Status permitted = permit_work(parts_, *context);
+        return permitted.ok() ? log_refusal(complete(*request), request->job_id(), "completion") : permitted;
+      },
       request->job_id());
 }
 
 absl::Status WorkerService::complete(const v1::CompleteRequest& request) {
   if (auto status = validate_complete(request); !status.ok()) return status;
-  const absl::Status files = files_are_there(request, parts_.artifacts);
+  const auto job = parts_.store.get(request.job_id());
+  if (!job.ok()) return gone_is_aborted(job.status());
+  const auto artifacts = parts_.artifacts.of(job->job.tenant());
+  if (!artifacts.ok()) return artifacts.status();
+  const absl::Status files = files_are_there(request, **artifacts);
   const Time now = parts_.clock.now();
   const auto after = parts_.store.modify(request.job_id(), [&](const JobRecord& record) -> Decision {
     Decision decision = decide_complete(record, request, now, parts_.policy);

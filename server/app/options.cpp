@@ -70,6 +70,18 @@ absl::Status ServerOptions::validate() const {
     return absl::InvalidArgumentError(
         fmt::format("--keep-jobs-days is {}, must be within 0 .. 3650", keep_jobs_days));
   }
+  if (keep_progress_hours < 0 || keep_progress_hours > 87'600) {
+    return absl::InvalidArgumentError(
+        fmt::format("--keep-progress-hours is {}, must be within 0 .. 87600", keep_progress_hours));
+  }
+  if (drain < Milliseconds(0) || drain > std::chrono::hours(1))
+    return absl::InvalidArgumentError("--drain must be within 0 .. 3600 seconds");
+  if (!client_ca.empty() && tls_cert.empty())
+    return absl::InvalidArgumentError("--client-ca needs --tls-cert and --tls-key");
+  if (!client_ca.empty() && tenants.empty()) {
+    return absl::InvalidArgumentError(
+        "--client-ca needs --tenants FILE, which says which callers are workers");
+  }
   if (auto status = policy.validate(); !status.ok())
     return absl::InvalidArgumentError("--" + std::string(status.message()));
   if (auto status = check_listen_address(listen); !status.ok()) return status;
@@ -85,6 +97,7 @@ std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* c
   ServerOptions options;
   double lease_seconds = static_cast<double>(options.policy.lease.count()) / 1000;
   double heartbeat_seconds = static_cast<double>(options.policy.heartbeat.count()) / 1000;
+  double drain_seconds = static_cast<double>(options.drain.count()) / 1000;
   double ageing_seconds = static_cast<double>(options.policy.ageing.count()) / 1000;
   CLI::App app(
       "Keeps the jobs of skinframe: takes them from clients, gives them to workers, keeps their results.",
@@ -124,6 +137,15 @@ std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* c
       "--profiles", options.profiles,
       "folder of printer and material profiles (*.json) beside the built-in ones; read again when it "
       "changes and on SIGHUP");
+  app.add_option("--keep-progress-hours", options.keep_progress_hours,
+                 "the progress of an ended job is forgotten after so many hours; 0: with the job")
+      ->capture_default_str();
+  app.add_option("--tenants", options.tenants,
+                 "JSON file: whose caller is whose, shares, quotas, who works; see server/README.md");
+  app.add_option("--client-ca", options.client_ca,
+                 "PEM file; a caller's certificate that it has signed proves who calls");
+  app.add_option("--drain", drain_seconds, "seconds that calls under way have left at a stop")
+      ->capture_default_str();
   app.add_option("--port-file", options.port_file, "written with host:port once the server listens");
   try {
     app.parse(argc, argv);
@@ -132,13 +154,14 @@ std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* c
     const std::string text = text_of(app, error, code);
     return EarlyEnd{text, code == 0 ? 0 : 2};
   }
-  for (const double seconds : {lease_seconds, heartbeat_seconds, ageing_seconds}) {
+  for (const double seconds : {lease_seconds, heartbeat_seconds, ageing_seconds, drain_seconds}) {
     if (!std::isfinite(seconds) || std::abs(seconds) > 1e6)
-      return EarlyEnd{"--lease, --heartbeat and --ageing must be plain numbers of seconds\n", 2};
+      return EarlyEnd{"--lease, --heartbeat, --ageing and --drain must be plain numbers of seconds\n", 2};
   }
   options.policy.lease = from_seconds(lease_seconds);
   options.policy.heartbeat = from_seconds(heartbeat_seconds);
   options.policy.ageing = from_seconds(ageing_seconds);
+  options.drain = from_seconds(drain_seconds);
   return options;
 }
 

@@ -24,7 +24,12 @@ struct ServerOptions {
   std::int64_t queue_limit = 10'000;  // 1 .. 1,000,000 queued jobs
   int keep_jobs_days = 30;            // after their end; 0: for ever; at most 3650
   std::filesystem::path profiles;     // folder of printers and materials; empty: the built-in ones alone
-  std::filesystem::path port_file;    // empty: none
+  int keep_progress_hours = 24;       // of an ended job; 0: for as long as the job; at most 87600
+  std::filesystem::path tenants;      // file of tenants; empty: everybody is the default tenant
+  std::filesystem::path
+      client_ca;              // PEM; callers' certificates are verified against it; empty: not asked for
+  Milliseconds drain{5'000};  // at the stop, for calls under way; 0 .. 1 h
+  std::filesystem::path port_file;  // empty: none
 
   bool store_is_postgres() const;
 

@@ -27,6 +27,7 @@
 #include "server/replicas/progress_follower.h"
 #include "server/retention/artifact_cleaner.h"
 #include "server/retention/job_retention.h"
+#include "server/retention/progress_thinning.h"
 #include "server/store/postgres_store.h"
 #include "server/store/sqlite_store.h"
 
@@ -37,13 +38,13 @@ constexpr int kExecutorThreads = 32;  // as many writes as one commit can hold
 constexpr std::size_t kMostWatchers = 10'000;
 constexpr Milliseconds kDutyPause{100};
 constexpr Milliseconds kFollowEvery{500};  // progress that another server wrote is seen so late at most
-constexpr Milliseconds kDay{24 * 3'600'000};
+constexpr Milliseconds kHour{3'600'000};
+constexpr Milliseconds kDay = 24 * kHour;
 constexpr Milliseconds kRetentionEvery{60'000};
 constexpr Milliseconds kUnused = kDay;  // an upload waits so long for its submission
 constexpr Milliseconds kCleanEvery{3'600'000};
 constexpr Milliseconds kProfilesEvery{1'000};
 constexpr int kDatabaseSessions = 16;
-constexpr std::chrono::seconds kStopPatience{1};  // for calls under way; uploads resume, the rest takes less
 constexpr int kLargestMessageBytes = 4 << 20;
 constexpr const char* kServices[] = {"skinframe.v1.JobService", "skinframe.v1.ArtifactService",
                                      "skinframe.v1.CatalogService", "skinframe.v1.WorkerService"};
@@ -74,24 +75,50 @@ absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> credentials(const Serve
   if (!certificate.ok()) return certificate.status();
   auto key = read_whole_file(options.tls_key);
   if (!key.ok()) return key.status();
-  grpc::SslServerCredentialsOptions tls(GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE);
+  // Whoever shows no certificate may still be known by token or address: that is the tenants' file's to say.
+  grpc::SslServerCredentialsOptions tls(options.client_ca.empty()
+                                            ? GRPC_SSL_DONT_REQUEST_CLIENT_CERTIFICATE
+                                            : GRPC_SSL_REQUEST_CLIENT_CERTIFICATE_AND_VERIFY);
+  if (!options.client_ca.empty()) {
+    auto authority = read_whole_file(options.client_ca);
+    if (!authority.ok()) return authority.status();
+    tls.pem_root_certs = *std::move(authority);
+  }
   tls.pem_key_cert_pairs.push_back({*std::move(key), *std::move(certificate)});
   return grpc::SslServerCredentials(tls);
+}
+
+// INVALID_ARGUMENT names what is wrong in the file.
+absl::StatusOr<TenantDirectory> read_tenants(const ServerOptions& options) {
+  if (options.tenants.empty()) return TenantDirectory();
+  const auto text = read_whole_file(options.tenants);
+  if (!text.ok()) return text.status();
+  auto config = parse_tenants(*text);
+  if (!config.ok())
+    return absl::InvalidArgumentError(
+        fmt::format("--tenants {}: {}", options.tenants.string(), std::string(config.status().message())));
+  return TenantDirectory(*std::move(config));
 }
 
 }  // namespace
 
 // In the order in which each needs those before it.
 struct Server::Rooms {
-  Rooms(DataFolder locked, const ServerOptions& options, Catalog known)
-      : folder(std::move(locked)), policy(options.policy), catalog(std::move(known)) {}
+  Rooms(DataFolder locked, TenantDirectory callers, const ServerOptions& options, Catalog known)
+      : folder(std::move(locked)),
+        tenants(std::move(callers)),
+        policy(options.policy),
+        drain(options.drain),
+        catalog(std::move(known)) {}
 
   DataFolder folder;
+  TenantDirectory tenants;
   AttemptPolicy policy;
+  Milliseconds drain;
   LiveCatalog catalog;
   WatchHub hub{kMostWatchers};
   CommitBell bell{hub};
-  std::unique_ptr<ArtifactStore> artifacts;
+  std::unique_ptr<TenantArtifacts> artifacts;
   std::unique_ptr<JobStore> store;
   Executor executor{kExecutorThreads};
   std::optional<LeaseDesk> desk;
@@ -99,6 +126,7 @@ struct Server::Rooms {
   std::optional<DeadlineWatch> deadlines;
   std::optional<ProgressFollower> follower;  // where other servers share the store
   std::optional<JobRetention> retention;
+  std::optional<ProgressThinning> thinning;
   std::optional<ArtifactCleaner> cleaner;
   std::optional<ProfileWatch> profile_watch;  // where the operator has a folder
   std::optional<DutyRunner> duties;
@@ -114,8 +142,8 @@ struct Server::Rooms {
 };
 
 absl::Status Server::Rooms::open(const ServerOptions& options, const Clock& clock, IdGenerator& ids) {
-  auto opened_artifacts = ArtifactStore::open(
-      options.artifacts.empty() ? folder.artifacts() : options.artifacts, ArtifactLimits{});
+  auto opened_artifacts = TenantArtifacts::open(
+      options.artifacts.empty() ? folder.artifacts() : options.artifacts, kDefaultTenant, ArtifactLimits{});
   if (!opened_artifacts.ok()) return opened_artifacts.status();
   artifacts = *std::move(opened_artifacts);
   auto opened_store = options.store_is_postgres()
@@ -124,13 +152,13 @@ absl::Status Server::Rooms::open(const ServerOptions& options, const Clock& cloc
   if (!opened_store.ok()) return opened_store.status();
   store = *std::move(opened_store);
 
-  desk.emplace(*store, executor, clock, policy);
+  desk.emplace(*store, executor, clock, policy, tenants);
   bell.connect(&*desk);
   reaper.emplace(*store, policy, clock.now());
   deadlines.emplace(*store);
 
-  const Parts parts{*store,   *artifacts, catalog, hub,    *desk,
-                    executor, clock,      ids,     policy, options.queue_limit};
+  const Parts parts{*store, *artifacts,         tenants, catalog, hub, *desk, executor, clock, ids,
+                    policy, options.queue_limit};
   jobs.emplace(parts);
   files.emplace(parts);
   profiles.emplace(catalog);
@@ -139,6 +167,8 @@ absl::Status Server::Rooms::open(const ServerOptions& options, const Clock& cloc
   if (options.store_is_postgres()) all.push_back(&follower.emplace(*store, hub, kFollowEvery));
   if (options.keep_jobs_days > 0)
     all.push_back(&retention.emplace(*store, options.keep_jobs_days * kDay, kRetentionEvery));
+  if (options.keep_progress_hours > 0)
+    all.push_back(&thinning.emplace(*store, options.keep_progress_hours * kHour, kRetentionEvery));
   all.push_back(&cleaner.emplace(*store, *artifacts, kUnused, kCleanEvery));
   if (!options.profiles.empty())
     all.push_back(&profile_watch.emplace(options.profiles, catalog, kProfilesEvery));
@@ -178,8 +208,10 @@ absl::StatusOr<std::unique_ptr<Server>> Server::start(const ServerOptions& optio
   if (!folder.ok()) return folder.status();
   auto known = options.profiles.empty() ? built_in_catalog() : load_catalog(options.profiles);
   if (!known.ok()) return known.status();
-  std::unique_ptr<Server> server(
-      new Server(std::make_unique<Rooms>(*std::move(folder), options, *std::move(known))));
+  auto tenants = read_tenants(options);
+  if (!tenants.ok()) return tenants.status();
+  std::unique_ptr<Server> server(new Server(
+      std::make_unique<Rooms>(*std::move(folder), *std::move(tenants), options, *std::move(known))));
   if (auto status = server->rooms_->open(options, clock, ids); !status.ok()) return status;
   if (auto status = server->rooms_->listen(options); !status.ok()) return status;
   if (!options.port_file.empty()) {
@@ -205,7 +237,7 @@ void Server::stop() {
   rooms_->hub.close();
   if (rooms_->grpc_server != nullptr) {
     rooms_->grpc_server->GetHealthCheckService()->SetServingStatus(false);
-    rooms_->grpc_server->Shutdown(std::chrono::system_clock::now() + kStopPatience);
+    rooms_->grpc_server->Shutdown(std::chrono::system_clock::now() + rooms_->drain);
     rooms_->grpc_server->Wait();
     rooms_->grpc_server.reset();
   }

@@ -27,8 +27,8 @@ class Server {
   // Reads the profile folder again, if there is one: within a tenth of a second. A bad file changes nothing.
   void reload_profiles();
 
-  // Takes no new calls; ends watches and waiting leases with UNAVAILABLE; gives other calls a second. What
-  // was acknowledged is durable with or without it.
+  // Takes no new calls (UNAVAILABLE); ends watches and waiting leases with UNAVAILABLE, to go on elsewhere or
+  // later; gives calls under way the time of --drain. What was acknowledged is durable with or without it.
   void stop();
 
  private:

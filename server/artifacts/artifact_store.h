@@ -64,6 +64,10 @@ class ArtifactStore {
   // Removes kept parts that nobody writes and nobody has written since then; how many.
   absl::StatusOr<int> remove_abandoned_parts(std::chrono::system_clock::time_point since);
 
+  // Bytes of all complete artifacts: counted at most once a minute, and in between what was uploaded here is
+  // added. So uploads by other servers on the folder, and removals, are seen a minute late.
+  absl::StatusOr<std::int64_t> bytes_used();
+
   const ArtifactLimits& limits() const { return limits_; }
 
  private:
@@ -72,11 +76,15 @@ class ArtifactStore {
   std::filesystem::path complete_path(std::string_view sha256) const;
   std::filesystem::path partial_path(std::string_view sha256) const;
   void release(const std::string& sha256);
+  void count_upload(std::int64_t size_bytes);
 
   const std::filesystem::path folder_;
   const ArtifactLimits limits_;
   std::mutex mutex_;
   std::unordered_set<std::string> uploading_;
+  std::mutex usage_mutex_;  // guards what follows
+  std::int64_t bytes_used_ = 0;
+  std::chrono::steady_clock::time_point counted_{};  // never yet
 };
 
 // 64 lower-case hexadecimal digits.

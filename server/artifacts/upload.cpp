@@ -96,6 +96,7 @@ absl::Status Upload::finish() {
   }
   if (!error) std::filesystem::rename(store_.partial_path(sha256_), place, error);
   if (error) return errno_status(error.value(), place, "make");
+  store_.count_upload(size_bytes_);
   return sync_folder(place.parent_path());
 }
 

@@ -113,24 +113,43 @@ void lose_attempt(Change& change, v1::Reason reason, const std::string& why, Tim
 
 // A worker that stops gives its job back in good order: the job is not to blame, so that no attempt counts as
 // lost and nothing rests.
-void hand_back(Change& change, Time now) {
+void hand_back(Change& change, const std::string& why, Time now) {
   JobRecord& record = change.record;
   record.not_before = now;
   record.job.clear_printers();  // the next attempt starts from nothing
-  move_job(change, Trigger::kHandedBack, v1::REASON_UNSPECIFIED, "its worker stopped; queued again", now);
+  move_job(change, Trigger::kHandedBack, v1::REASON_UNSPECIFIED, why, now);
 }
 
 }  // namespace
 
-Change decide_submit(JobRecord record, Time now) {
+Change decide_submit(JobRecord record, Time now, const AttemptPolicy& policy) {
   Change change{std::move(record), {}};
   v1::Job& job = change.record.job;
+  if (job.tenant().empty()) job.set_tenant(kDefaultTenant);
   job.set_state(v1::JOB_STATE_QUEUED);
   *job.mutable_create_time() = to_timestamp(now);
+  change.record.rank_ms = rank_ms(now, job.spec().priority(), policy);
   if (job.spec().has_deadline()) change.record.deadline = now + from_duration(job.spec().deadline());
   v1::JobEvent event = event_at(now);
   event.mutable_state()->set_state(v1::JOB_STATE_QUEUED);
   change.events.push_back(std::move(event));
+  return change;
+}
+
+Change decide_reuse(JobRecord record, const JobRecord& earlier, Time now, const AttemptPolicy& policy) {
+  Change change = decide_submit(std::move(record), now, policy);
+  v1::Job& job = change.record.job;
+  const v1::Job& made = earlier.job;
+  job.set_state(v1::JOB_STATE_SUCCEEDED);
+  job.set_reused_job_id(made.reused_job_id().empty() ? made.job_id() : made.reused_job_id());
+  job.set_detail(fmt::format("not run: the result of job {}, which asked for the same", job.reused_job_id()));
+  *job.mutable_printers() = made.printers();
+  *job.mutable_files() = made.files();
+  if (made.has_frame()) *job.mutable_frame() = made.frame();
+  *job.mutable_end_time() = to_timestamp(now);
+  v1::StateChange& event = *change.events.front().mutable_state();
+  event.set_state(job.state());
+  event.set_detail(job.detail());
   return change;
 }
 
@@ -194,7 +213,7 @@ Decision decide_complete(const JobRecord& record, const v1::CompleteRequest& req
   change.record.completion_digest = digest;
   if (request.state() == v1::JOB_STATE_CANCELLED) {
     if (!must_stop(record, now)) {
-      hand_back(change, now);
+      hand_back(change, "its worker stopped; queued again", now);
       return change;
     }
     take_printer_results(change, request.printers(), now);
@@ -223,6 +242,17 @@ Decision decide_lease_expired(const JobRecord& record, Time now, const AttemptPo
   lose_attempt(change, v1::REASON_CRASHED,
                fmt::format("no heartbeat from worker {} before its lease ended", record.lease.worker_id), now,
                policy);
+  return change;
+}
+
+Decision decide_undelivered(const JobRecord& record, std::int64_t fencing_token, Time now) {
+  if (!holds_lease(record, fencing_token)) return std::nullopt;
+  Change change{record, {}};
+  if (must_stop(record, now)) {
+    change.record.lease.expires = now;  // the reaper ends it as it ends any job that was to stop
+    return change;
+  }
+  hand_back(change, "its worker hung up before the job reached it; queued again", now);
   return change;
 }
 

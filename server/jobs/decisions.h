@@ -19,8 +19,13 @@ namespace skinframe::server {
 
 using Decision = absl::StatusOr<std::optional<Change>>;
 
-// A new job: QUEUED, with its first event. record holds id, spec, profiles, request id and digest.
-Change decide_submit(JobRecord record, Time now);
+// A new job: QUEUED, with its first event. record holds id, tenant (else the default one), spec, profiles,
+// request id and digest.
+Change decide_submit(JobRecord record, Time now, const AttemptPolicy& policy);
+
+// A new job that asks for what an earlier one has made: SUCCEEDED at once with that one's results, and its
+// only event and its detail say so.
+Change decide_reuse(JobRecord record, const JobRecord& earlier, Time now, const AttemptPolicy& policy);
 
 // CancelJob. Queued: CANCELLED at once. Running: cancel_requested; heartbeats tell the worker, and a lease
 // that lasts longer than the policy's patience is cut to that, so that a worker that does not obey loses the
@@ -55,6 +60,10 @@ Decision decide_lease_expired(const JobRecord& record, Time now, const AttemptPo
 // The deadline duty's: a queued job past its deadline is FAILED, TIMED_OUT. Nothing otherwise; a running one
 // is stopped through its heartbeat or its lease.
 Decision decide_deadline(const JobRecord& record, Time now);
+
+// The answer with the lease never reached the worker, which hung up: queued again at once, no attempt is
+// lost. Nothing when the lease is over meanwhile.
+Decision decide_undelivered(const JobRecord& record, std::int64_t fencing_token, Time now);
 
 // Whether a job may start from this earlier one. FAILED_PRECONDITION: it has not succeeded. INVALID_ARGUMENT:
 // it is of another mesh, or of a frame problem.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/leases/lease_desk.h"
 
+#include <spdlog/spdlog.h>
+
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include "server/jobs/decisions.h"
@@ -13,8 +16,9 @@ absl::Status server_stops() { return absl::UnavailableError("the server stops; a
 
 }  // namespace
 
-LeaseDesk::LeaseDesk(JobStore& store, Executor& executor, const Clock& clock, const AttemptPolicy& policy)
-    : store_(store), executor_(executor), clock_(clock), policy_(policy) {}
+LeaseDesk::LeaseDesk(JobStore& store, Executor& executor, const Clock& clock, const AttemptPolicy& policy,
+                     const TenantDirectory& tenants)
+    : store_(store), executor_(executor), clock_(clock), policy_(policy), fair_share_(tenants) {}
 
 LeaseDesk::Ticket LeaseDesk::ask(const std::string& worker_id, const std::string& instance_id,
                                  Milliseconds wait, Answer answer) {
@@ -60,6 +64,22 @@ void LeaseDesk::schedule_serve() {
   executor_.post([this] { serve(); });
 }
 
+// Whether the waiter is still there.
+bool LeaseDesk::take_from_hand(Ticket ticket) {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(in_hand_, 0) == ticket;
+}
+
+void LeaseDesk::undelivered(const JobRecord& leased) {
+  const auto queued = store_.modify(leased.job.job_id(), [&](const JobRecord& record) {
+    return decide_undelivered(record, leased.lease.fencing_token, clock_.now());
+  });
+  // The lease's end does the same later.
+  if (!queued.ok())
+    spdlog::warn("job={} stays with a worker that hung up until its lease ends: {}", leased.job.job_id(),
+                 std::string(queued.status().message()));
+}
+
 std::optional<LeaseDesk::Waiter> LeaseDesk::take_first() {
   const std::lock_guard lock(mutex_);
   if (waiters_.empty()) return std::nullopt;
@@ -74,11 +94,19 @@ void LeaseDesk::serve() {
     std::optional<Waiter> waiter = take_first();
     if (waiter) {
       const Time now = clock_.now();
-      auto leased = store_.lease_next(now, [&](const JobRecord& record, std::int64_t token) {
-        return decide_lease(record, token, waiter->worker_id, waiter->instance_id, now, policy_);
-      });
+      auto leased = store_.lease_next(
+          now, [&](const std::vector<TenantLoad>& waiting) { return fair_share_.order(waiting); },
+          [&](const JobRecord& record, std::int64_t token) {
+            return decide_lease(record, token, waiter->worker_id, waiter->instance_id, now, policy_);
+          });
       const bool nothing_to_do = leased.ok() && !leased->has_value();
       if (!nothing_to_do) {
+        if (leased.ok()) fair_share_.leased((*leased)->job.tenant());
+        const bool gone = !take_from_hand(waiter->ticket);
+        if (gone && leased.ok()) {
+          undelivered(**leased);
+          leased = absl::CancelledError("the worker hung up");
+        }
         waiter->answer(std::move(leased));
         continue;
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where workers wait for work (the long poll of WorkerService.Lease). First come, first served; a job that
-// becomes queued reaches the first waiting worker at once.
+// Where workers wait for work (the long poll of WorkerService.Lease). First come, first served among workers,
+// fair among tenants; a job that becomes queued reaches the first waiting worker at once.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include "server/executor/executor.h"
 #include "server/jobs/attempt_policy.h"
 #include "server/leases/duty.h"
+#include "server/leases/fair_share.h"
 #include "server/store/job_store.h"
 
 namespace skinframe::server {
@@ -27,14 +28,18 @@ class LeaseDesk final : public Duty {
   using Ticket = std::uint64_t;
 
   // The executor is stopped before the desk goes.
-  LeaseDesk(JobStore& store, Executor& executor, const Clock& clock, const AttemptPolicy& policy);
+  LeaseDesk(JobStore& store, Executor& executor, const Clock& clock, const AttemptPolicy& policy,
+            const TenantDirectory& tenants);
 
   // Calls answer exactly once, on a thread of the executor or of the caller of run_once, withdraw or close;
   // never from within ask.
   Ticket ask(const std::string& worker_id, const std::string& instance_id, Milliseconds wait, Answer answer);
 
-  // The worker hung up. When a job is just being given to it, the job's lease will expire instead.
+  // The worker hung up. A job that is just being given to it is queued again.
   void withdraw(Ticket ticket);
+
+  // The answer with this job came too late: the worker had hung up. Queues the job again, if it is still its.
+  void undelivered(const JobRecord& leased);
 
   // Quick, and calls no store: for the store's listener.
   void job_queued();
@@ -54,6 +59,7 @@ class LeaseDesk final : public Duty {
     Answer answer;
   };
 
+  bool take_from_hand(Ticket ticket);
   void schedule_serve();
   void serve();
   void answer_overdue(Time now);
@@ -63,6 +69,7 @@ class LeaseDesk final : public Duty {
   Executor& executor_;
   const Clock& clock_;
   const AttemptPolicy policy_;
+  FairShare fair_share_;  // only whoever serves
   std::mutex mutex_;
   std::list<Waiter> waiters_;  // by arrival
   Ticket last_ticket_ = 0;

@@ -37,17 +37,26 @@ absl::Status ArtifactCleaner::run_once(Time now) {
   looked_ = now;
   const std::chrono::system_clock::time_point since(
       std::chrono::duration_cast<std::chrono::system_clock::duration>((now - unused_).time_since_epoch()));
-  const auto unused = artifacts_.unused_since(since);
+  const auto stores = artifacts_.all();
+  if (!stores.ok()) return stores.status();
+  for (ArtifactStore* store : *stores) {
+    if (absl::Status status = clean(*store, since); !status.ok()) return status;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status ArtifactCleaner::clean(ArtifactStore& artifacts, std::chrono::system_clock::time_point since) {
+  const auto unused = artifacts.unused_since(since);
   if (!unused.ok()) return unused.status();
   std::set<std::string> candidates(unused->begin(), unused->end());
   if (absl::Status status = keep_referred(candidates); !status.ok()) return status;
   int removed = 0;
   for (const std::string& name : candidates) {
-    const auto gone = artifacts_.remove_unused(name, since);
+    const auto gone = artifacts.remove_unused(name, since);
     if (!gone.ok()) return gone.status();
     if (*gone) ++removed;
   }
-  const auto parts = artifacts_.remove_abandoned_parts(since);
+  const auto parts = artifacts.remove_abandoned_parts(since);
   if (!parts.ok()) return parts.status();
   if (removed + *parts > 0)
     spdlog::info("artifacts: removed {} that no job refers to, and {} abandoned parts", removed, *parts);

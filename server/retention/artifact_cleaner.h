@@ -5,13 +5,14 @@
 // Why nothing that is referred to can go: candidates are those unused since `unused` ago, found first; then
 // all jobs are read, and what they refer to is taken out. A job that is submitted meanwhile asks for its mesh
 // before it is made, and a worker's result is asked for before it is accepted: that counts as use, and an
-// artifact's last use is looked at once more when it goes (ArtifactStore::remove_unused).
+// artifact's last use is looked at once more when it goes (ArtifactStore::remove_unused). The tenants are
+// gone through one by one; what a job refers to is kept in all of them.
 #pragma once
 
 #include <set>
 #include <string>
 
-#include "server/artifacts/artifact_store.h"
+#include "server/artifacts/tenant_artifacts.h"
 #include "server/leases/duty.h"
 #include "server/store/job_store.h"
 
@@ -23,16 +24,17 @@ std::set<std::string> artifacts_of(const v1::Job& job);
 class ArtifactCleaner final : public Duty {
  public:
   // unused: longer than any client takes from its upload to its submission.
-  ArtifactCleaner(JobStore& store, ArtifactStore& artifacts, Milliseconds unused, Milliseconds every)
+  ArtifactCleaner(JobStore& store, TenantArtifacts& artifacts, Milliseconds unused, Milliseconds every)
       : store_(store), artifacts_(artifacts), unused_(unused), every_(every) {}
   std::string_view name() const override { return "artifact cleaner"; }
   absl::Status run_once(Time now) override;
 
  private:
+  absl::Status clean(ArtifactStore& artifacts, std::chrono::system_clock::time_point since);
   absl::Status keep_referred(std::set<std::string>& candidates);
 
   JobStore& store_;
-  ArtifactStore& artifacts_;
+  TenantArtifacts& artifacts_;
   const Milliseconds unused_;
   const Milliseconds every_;
   Time looked_{};

@@ -15,6 +15,7 @@
 #include "absl/status/statusor.h"
 #include "server/store/job_rows.h"
 #include "server/store/job_store.h"
+#include "server/store/queue_counts.h"
 
 namespace skinframe::server {
 
@@ -24,7 +25,7 @@ absl::StatusOr<std::optional<JobRecord>> find_request(Database& database, const 
   if (asked.request_id.empty()) return std::optional<JobRecord>();
   typename Database::Statement same(database,
                                     fmt::format("SELECT {} FROM jobs WHERE request_id = ?", kJobColumns));
-  if (!same.bind_text(asked.request_id).step()) {
+  if (!same.bind_text(request_key(asked.job.tenant(), asked.request_id)).step()) {
     if (!same.status().ok()) return same.status();
     return std::optional<JobRecord>();
   }
@@ -37,43 +38,58 @@ absl::StatusOr<std::optional<JobRecord>> find_request(Database& database, const 
   return std::optional<JobRecord>(std::move(row->record));
 }
 
-// RESOURCE_EXHAUSTED: queue_limit jobs are queued.
+// counts: of the queue that database holds. RESOURCE_EXHAUSTED: one of the limits is reached.
 template <class Database>
-absl::Status permit_one_more(Database& database, std::int64_t queue_limit) {
-  // Counts no further than the limit.
-  typename Database::Statement queued(
-      database, "SELECT count(*) FROM (SELECT 1 FROM jobs WHERE state = 1 LIMIT ?) AS queued");
-  if (!queued.bind(queue_limit).step()) return queued.status();
-  if (queued.integer(0) < queue_limit) return absl::OkStatus();
-  return absl::ResourceExhaustedError(fmt::format("the queue is full: {} jobs wait", queued.integer(0)));
-}
-
-template <class Database>
-absl::StatusOr<Created> create_job(Database& database, const Change& job, std::int64_t queue_limit) {
+absl::StatusOr<Created> create_job(Database& database, const Change& job, const QueueLimits& limits,
+                                   QueueCounts& counts) {
   for (;;) {
     auto same = find_request(database, job.record);
     if (!same.ok()) return same.status();
     if (same->has_value()) return Created{std::move(**same), true};
-    if (absl::Status status = permit_one_more(database, queue_limit); !status.ok()) return status;
+    const bool queued = job.record.job.state() == v1::JOB_STATE_QUEUED;
+    if (queued) {
+      absl::Status status = counts.permit_one_more(database, job.record.job.tenant(), limits);
+      if (!status.ok()) return status;
+    }
     Created created{job.record, false};
     const auto ordinal = insert_job(database, created.record);
     if (!ordinal.ok()) return ordinal.status();
     if (!ordinal->has_value()) continue;  // somebody came between the look and the insert
     if (absl::Status status = write_change(database, **ordinal, created.record, job.events); !status.ok())
       return status;
+    if (queued) counts.add_one(job.record.job.tenant());
     return created;
   }
 }
 
-// The first job that may run now, locked where the store locks rows. Nothing: there is none, or others hold
-// those that there are.
+// The tenants that have queued jobs: by jumps through the index, so that it costs a look for each tenant and
+// not for each job; and a count over the running jobs, which are as many as there are workers.
+inline constexpr char kTenantLoads[] =
+    "WITH RECURSIVE waiting (tenant) AS ("
+    "SELECT min(tenant) FROM jobs WHERE state = 1 UNION ALL "
+    "SELECT (SELECT min(tenant) FROM jobs WHERE state = 1 AND tenant > waiting.tenant) FROM waiting "
+    "WHERE waiting.tenant IS NOT NULL) "
+    "SELECT tenant, (SELECT count(*) FROM jobs WHERE state = 2 AND jobs.tenant = waiting.tenant) "
+    "FROM waiting WHERE tenant IS NOT NULL";
+
 template <class Database>
-absl::StatusOr<std::optional<JobRow>> first_queued(Database& database, Time now) {
+absl::StatusOr<std::vector<TenantLoad>> tenant_loads(Database& database) {
+  typename Database::Statement select(database, kTenantLoads);
+  std::vector<TenantLoad> loads;
+  while (select.step()) loads.push_back({select.bytes(0), select.integer(1)});
+  if (!select.status().ok()) return select.status();
+  return loads;
+}
+
+// The tenant's first job that may run now, locked where the store locks rows. Nothing: there is none, or
+// others hold those that there are.
+template <class Database>
+absl::StatusOr<std::optional<JobRow>> first_queued(Database& database, const std::string& tenant, Time now) {
   typename Database::Statement first(database,
-                                     fmt::format("SELECT {} FROM jobs WHERE state = 1 AND not_before_ms <= ? "
-                                                 "ORDER BY priority DESC, ordinal LIMIT 1{}",
+                                     fmt::format("SELECT {} FROM jobs WHERE state = 1 AND tenant = ? "
+                                                 "AND not_before_ms <= ? ORDER BY rank_ms, ordinal LIMIT 1{}",
                                                  kJobColumns, Database::kSkipLocked));
-  if (first.bind(to_ms(now)).step()) {
+  if (first.bind_text(tenant).bind(to_ms(now)).step()) {
     auto row = read_row(first);
     if (!row.ok()) return row.status();
     return std::optional<JobRow>(*std::move(row));
@@ -82,9 +98,64 @@ absl::StatusOr<std::optional<JobRow>> first_queued(Database& database, Time now)
   return std::optional<JobRow>();
 }
 
+// The first job that may run now of the first tenant in the order that has one. asked: whose jobs were looked
+// for, where that is wanted.
+template <class Database>
+absl::StatusOr<std::optional<JobRow>> first_in_order(Database& database, Time now, const OrderTenants& order,
+                                                     std::vector<std::string>* asked = nullptr) {
+  const auto loads = tenant_loads(database);
+  if (!loads.ok()) return loads.status();
+  std::vector<std::string> tenants = order(*loads);
+  for (const std::string& tenant : tenants) {
+    auto row = first_queued(database, tenant, now);
+    if (!row.ok() || row->has_value()) return row;
+  }
+  if (asked != nullptr) *asked = std::move(tenants);
+  return std::optional<JobRow>();
+}
+
+template <class Database>
+absl::StatusOr<std::optional<JobRecord>> newest_reusable(Database& database, const std::string& tenant,
+                                                         const std::string& reuse_key) {
+  typename Database::Statement newest(
+      database, fmt::format("SELECT {} FROM jobs WHERE state = 3 AND reason = 0 AND tenant = ? AND "
+                            "reuse_key = ? ORDER BY ordinal DESC LIMIT 1",
+                            kJobColumns));
+  if (newest.bind_text(tenant).bind_text(reuse_key).step()) {
+    auto row = read_row(newest);
+    if (!row.ok()) return row.status();
+    return std::optional<JobRecord>(std::move(row->record));
+  }
+  if (!newest.status().ok()) return newest.status();
+  return std::optional<JobRecord>();
+}
+
+// Within the caller's transaction; how many jobs.
+template <class Database>
+absl::StatusOr<int> thin_ended_jobs(Database& database, Time until, int most_jobs) {
+  std::vector<std::int64_t> ordinals;
+  {
+    typename Database::Statement ended(
+        database, fmt::format("SELECT ordinal FROM jobs WHERE state > 2 AND thinned = 0 AND end_ms <= ? "
+                              "ORDER BY end_ms LIMIT ?{}",
+                              Database::kSkipLocked));
+    ended.bind(to_ms(until)).bind(most_jobs);
+    while (ended.step()) ordinals.push_back(ended.integer(0));
+    if (!ended.status().ok()) return ended.status();
+  }
+  for (const std::int64_t ordinal : ordinals) {
+    typename Database::Statement forget(database, "DELETE FROM events WHERE ordinal = ? AND progress = 1");
+    if (absl::Status status = forget.bind(ordinal).run(); !status.ok()) return status;
+    typename Database::Statement mark(database, "UPDATE jobs SET thinned = 1 WHERE ordinal = ?");
+    if (absl::Status status = mark.bind(ordinal).run(); !status.ok()) return status;
+  }
+  return static_cast<int>(ordinals.size());
+}
+
 template <class Database>
 absl::StatusOr<ListPage> list_jobs(Database& database, const ListQuery& query) {
   std::string sql = fmt::format("SELECT {} FROM jobs WHERE true", kJobColumns);
+  if (query.tenant) sql += " AND tenant = ?";
   if (query.before_ordinal > 0) sql += " AND ordinal < ?";
   for (std::size_t i = 0; i < query.states.size(); ++i) sql += i == 0 ? " AND state IN (?" : ", ?";
   if (!query.states.empty()) sql += ")";
@@ -94,6 +165,7 @@ absl::StatusOr<ListPage> list_jobs(Database& database, const ListQuery& query) {
   sql += " ORDER BY ordinal DESC LIMIT ?";
 
   typename Database::Statement select(database, sql);
+  if (query.tenant) select.bind_text(*query.tenant);
   if (query.before_ordinal > 0) select.bind(query.before_ordinal);
   for (const v1::JobState state : query.states) select.bind(state);
   for (const auto& [key, value] : query.labels) select.bind_text(key).bind_text(value);
@@ -139,8 +211,8 @@ template <class Database>
 absl::StatusOr<std::int64_t> count_queued_before(Database& database, const std::string& job_id) {
   typename Database::Statement count(
       database,
-      "SELECT (SELECT count(*) FROM jobs WHERE state = 1 AND (priority > own.priority OR "
-      "(priority = own.priority AND ordinal < own.ordinal))) FROM jobs own WHERE job_id = ?");
+      "SELECT (SELECT count(*) FROM (SELECT 1 FROM jobs WHERE state = 1 AND tenant = own.tenant AND "
+      "(rank_ms, ordinal) < (own.rank_ms, own.ordinal) LIMIT 1000) AS ahead) FROM jobs own WHERE job_id = ?");
   if (count.bind_text(job_id).step()) return count.integer(0);
   return count.status().ok() ? job_not_found(job_id) : count.status();
 }

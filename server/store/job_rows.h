@@ -31,7 +31,8 @@ struct JobRow {
 inline constexpr char kJobColumns[] =
     "ordinal, job_id, request_id, spec_digest, spec, profiles, create_ms, deadline_ms, state, reason, "
     "detail, results, start_ms, end_ms, attempt, lost_attempts, not_before_ms, cancel_requested, "
-    "last_sequence, fencing_token, worker_id, instance_id, lease_expires_ms, completion_digest";
+    "last_sequence, fencing_token, worker_id, instance_id, lease_expires_ms, completion_digest, tenant, "
+    "reuse_key, rank_ms";
 
 inline absl::Status job_not_found(const std::string& job_id) {
   return absl::NotFoundError(fmt::format("no job \"{}\"", job_id));
@@ -39,6 +40,15 @@ inline absl::Status job_not_found(const std::string& job_id) {
 
 inline std::int64_t to_ms(Time time) { return time.time_since_epoch().count(); }
 inline Time from_ms(std::int64_t ms) { return Time(Milliseconds(ms)); }
+
+// A request id is its tenant's own. Neither has a slash.
+inline std::string request_key(const std::string& tenant, const std::string& request_id) {
+  return tenant == kDefaultTenant ? request_id : tenant + "/" + request_id;
+}
+inline std::string request_id_of(const std::string& key) {
+  const std::size_t slash = key.find('/');
+  return slash == std::string::npos ? key : key.substr(slash + 1);
+}
 
 inline std::string profiles_blob(const JobRecord& record) {
   v1::Assignment profiles;
@@ -53,6 +63,7 @@ inline std::string results_blob(const JobRecord& record) {
   *results.mutable_printers() = record.job.printers();
   *results.mutable_files() = record.job.files();
   if (record.job.has_frame()) *results.mutable_frame() = record.job.frame();
+  results.set_reused_job_id(record.job.reused_job_id());
   return results.SerializeAsString();
 }
 
@@ -108,7 +119,7 @@ absl::StatusOr<JobRow> read_row(const Statement& row) {
   int column = 0;
   result.ordinal = row.integer(column++);
   const std::string job_id = row.bytes(column++);
-  record.request_id = row.bytes(column++);
+  record.request_id = request_id_of(row.bytes(column++));
   record.spec_digest = row.bytes(column++);
   const std::string spec = row.bytes(column++);
   const std::string profile_bytes = row.bytes(column++);
@@ -140,6 +151,9 @@ absl::StatusOr<JobRow> read_row(const Statement& row) {
   record.lease.instance_id = row.bytes(column++);
   record.lease.expires = from_ms(row.integer(column++));
   record.completion_digest = row.bytes(column++);
+  job.set_tenant(row.bytes(column++));
+  record.reuse_key = row.bytes(column++);
+  record.rank_ms = row.integer(column++);
   return result;
 }
 
@@ -157,7 +171,8 @@ template <class Database>
 absl::StatusOr<std::optional<std::int64_t>> insert_job(Database& database, const JobRecord& record) {
   static const std::string kSql = fmt::format(
       "INSERT INTO jobs (job_id, request_id, spec_digest, spec, profiles, priority, create_ms, "
-      "deadline_ms, {}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) "
+      "deadline_ms, tenant, reuse_key, rank_ms, {}) VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+      "?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?) "
       "ON CONFLICT (request_id) DO NOTHING RETURNING ordinal",
       kMutableInsert);
   const v1::Job& job = record.job;
@@ -166,7 +181,7 @@ absl::StatusOr<std::optional<std::int64_t>> insert_job(Database& database, const
   if (record.request_id.empty()) {
     insert.bind_null();
   } else {
-    insert.bind_text(record.request_id);
+    insert.bind_text(request_key(job.tenant(), record.request_id));
   }
   insert.bind_text(record.spec_digest)
       .bind_blob(job.spec().SerializeAsString())
@@ -178,6 +193,13 @@ absl::StatusOr<std::optional<std::int64_t>> insert_job(Database& database, const
   } else {
     insert.bind_null();
   }
+  insert.bind_text(job.tenant());
+  if (record.reuse_key.empty()) {
+    insert.bind_null();
+  } else {
+    insert.bind_text(record.reuse_key);
+  }
+  insert.bind(record.rank_ms);
   bind_mutable(insert, record);
   if (!insert.step()) {
     if (!insert.status().ok()) return insert.status();
@@ -206,9 +228,13 @@ absl::Status append_events(Database& database, std::int64_t ordinal, JobRecord& 
     const std::int64_t sequence = record.job.last_sequence() + 1;
     event.set_job_id(record.job.job_id());
     event.set_sequence(sequence);
-    typename Database::Statement insert(database,
-                                        "INSERT INTO events (ordinal, sequence, body) VALUES (?, ?, ?)");
-    absl::Status status = insert.bind(ordinal).bind(sequence).bind_blob(event.SerializeAsString()).run();
+    typename Database::Statement insert(
+        database, "INSERT INTO events (ordinal, sequence, progress, body) VALUES (?, ?, ?, ?)");
+    absl::Status status = insert.bind(ordinal)
+                              .bind(sequence)
+                              .bind(event.has_progress() ? 1 : 0)
+                              .bind_blob(event.SerializeAsString())
+                              .run();
     if (!status.ok()) return status;
     record.job.set_last_sequence(sequence);
   }

@@ -5,7 +5,9 @@
 // Guarantees of every implementation, checked by one conformance suite:
 //   1. A write that returned OK is durable; one that returned an error left nothing behind.
 //   2. A decision sees the job as it stands, and nothing changes the job between that look and its change.
-//   3. A job's events are numbered 1, 2, 3 ... without a gap, in the order of their commits.
+//   3. A job's events are numbered 1, 2, 3 ... without a gap, in the order of their commits; thin_progress
+//   alone
+//      leaves gaps.
 //   4. After a commit, and before the write returns, the listener is told.
 //   5. Fencing tokens rise over all jobs, and none is given twice, whatever was deleted or restarted.
 // All calls block; all may be made from any thread. Errors beside those named: UNAVAILABLE (busy, stopping),
@@ -14,6 +16,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -43,7 +46,23 @@ struct Created {
   bool existed = false;  // the request id was known with the same spec digest; nothing was written
 };
 
+// How many jobs may be queued; RESOURCE_EXHAUSTED beyond either.
+struct QueueLimits {
+  QueueLimits(std::int64_t all_jobs,  // NOLINT(google-explicit-constructor)
+              std::int64_t jobs_of_the_tenant = std::numeric_limits<std::int64_t>::max())
+      : all(all_jobs), of_tenant(jobs_of_the_tenant) {}
+  std::int64_t all;        // over all tenants
+  std::int64_t of_tenant;  // of the job's own
+};
+
+// A tenant that has queued jobs, and how many of its jobs are running.
+struct TenantLoad {
+  std::string tenant;
+  std::int64_t running = 0;
+};
+
 struct ListQuery {
+  std::optional<std::string> tenant;          // none: of all
   std::vector<v1::JobState> states;           // empty: all
   std::map<std::string, std::string> labels;  // all must match
   int limit = 50;
@@ -61,23 +80,36 @@ struct ListPage {
 
 // The change to make, nothing, or a refusal, which becomes the call's own status.
 using Decide = std::function<absl::StatusOr<std::optional<Change>>(const JobRecord&)>;
+// Whose jobs to look at, in this order; those left out get nothing.
+using OrderTenants = std::function<std::vector<std::string>(const std::vector<TenantLoad>&)>;
 using DecideLease = std::function<Change(const JobRecord&, std::int64_t fencing_token)>;
 using Permit = std::function<absl::Status(const JobRecord&)>;
+
+inline std::vector<std::string> all_by_name(const std::vector<TenantLoad>& waiting) {
+  std::vector<std::string> names;
+  for (const TenantLoad& load : waiting) names.push_back(load.tenant);
+  return names;  // the store names them so
+}
 
 class JobStore {
  public:
   virtual ~JobStore() = default;
 
-  // ALREADY_EXISTS: the request id is known with another digest. RESOURCE_EXHAUSTED: queue_limit jobs are
-  // queued.
-  virtual absl::StatusOr<Created> create(const Change& job, std::int64_t queue_limit) = 0;
+  // ALREADY_EXISTS: the request id is known, of the same tenant, with another digest. RESOURCE_EXHAUSTED: as
+  // many jobs are queued as may be; only asked of a job that is to be queued.
+  virtual absl::StatusOr<Created> create(const Change& job, const QueueLimits& limits) = 0;
 
   // Runs decide on the job and makes its change durable; returns the job as it then stands. NOT_FOUND.
   virtual absl::StatusOr<JobRecord> modify(const std::string& job_id, const Decide& decide) = 0;
 
-  // Runs decide on the first queued job with not_before <= now: highest priority, then oldest. Nothing: no
-  // such job.
-  virtual absl::StatusOr<std::optional<JobRecord>> lease_next(Time now, const DecideLease& decide) = 0;
+  // Runs decide on the first queued job with not_before <= now of the first tenant in the order that has one:
+  // smallest rank_ms, then oldest. Nothing: no such job. Costs the same however many jobs are queued.
+  virtual absl::StatusOr<std::optional<JobRecord>> lease_next(Time now, const OrderTenants& order,
+                                                              const DecideLease& decide) = 0;
+  // The same for those who have no policy between tenants: in the order of their names.
+  absl::StatusOr<std::optional<JobRecord>> lease_next(Time now, const DecideLease& decide) {
+    return lease_next(now, all_by_name, decide);
+  }
 
   // Forgets job, labels and events when permit says OK. NOT_FOUND.
   virtual absl::Status remove(const std::string& job_id, const Permit& permit) = 0;
@@ -86,11 +118,15 @@ class JobStore {
   virtual absl::StatusOr<JobRecord> get(const std::string& job_id) = 0;
   virtual absl::StatusOr<ListPage> list(const ListQuery& query) = 0;
 
-  // At most limit events after a sequence number, in order. NOT_FOUND.
+  // The newest job of the tenant that SUCCEEDED without reservation and has this reuse_key; nothing: none.
+  virtual absl::StatusOr<std::optional<JobRecord>> find_reusable(const std::string& tenant,
+                                                                 const std::string& reuse_key) = 0;
+
+  // At most limit events after a sequence number, in order; thinned ones are not among them. NOT_FOUND.
   virtual absl::StatusOr<std::vector<v1::JobEvent>> events(const std::string& job_id,
                                                            std::int64_t after_sequence, int limit) = 0;
 
-  // Queued jobs that stand before this queued one. NOT_FOUND.
+  // Queued jobs of its tenant that stand before this queued one; counts to 1000 and no further. NOT_FOUND.
   virtual absl::StatusOr<std::int64_t> queued_before(const std::string& job_id) = 0;
 
   // Ids of running jobs whose lease ended at or before now; of queued jobs whose deadline passed. Oldest
@@ -100,6 +136,10 @@ class JobStore {
 
   // Ids of jobs that ended at or before a time, those that ended first first.
   virtual absl::StatusOr<std::vector<std::string>> ended_jobs(Time until, int limit) = 0;
+
+  // Forgets the progress events of at most so many jobs that ended at or before a time; how many jobs.
+  // Changes of state and results of printers stay, under their numbers.
+  virtual absl::StatusOr<int> thin_progress(Time until, int most_jobs) = 0;
 
   // The sequence number of the newest event of each of these jobs; unknown ones are left out.
   virtual absl::StatusOr<std::map<std::string, std::int64_t>> last_sequences(

@@ -62,8 +62,26 @@ CREATE SEQUENCE fencing_tokens;
 // For the retention of ended jobs.
 constexpr char kEndedIndex[] = "CREATE INDEX jobs_ended ON jobs (end_ms) WHERE state > 2";
 
+// Tenants, and within each a queue in the order of rank_ms; earlier results by what they were asked for;
+// events of progress, which may go, told from those that stay.
+constexpr char kTenants[] = R"sql(
+ALTER TABLE jobs ADD COLUMN tenant TEXT NOT NULL DEFAULT 'default';
+ALTER TABLE jobs ADD COLUMN rank_ms BIGINT NOT NULL DEFAULT 0;
+ALTER TABLE jobs ADD COLUMN reuse_key TEXT;
+ALTER TABLE jobs ADD COLUMN thinned INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE events ADD COLUMN progress INTEGER NOT NULL DEFAULT 0;
+UPDATE jobs SET rank_ms = create_ms - priority * 600000;
+DROP INDEX jobs_queue;
+CREATE INDEX jobs_queue   ON jobs (tenant, rank_ms, ordinal) WHERE state = 1;
+CREATE INDEX jobs_running ON jobs (tenant) WHERE state = 2;
+CREATE INDEX jobs_reuse   ON jobs (tenant, reuse_key, ordinal) WHERE state = 3 AND reuse_key IS NOT NULL;
+CREATE INDEX jobs_thin    ON jobs (end_ms) WHERE state > 2 AND thinned = 0;
+CREATE INDEX jobs_tenant  ON jobs (tenant, ordinal);
+)sql";
+
 constexpr std::array kMigrations = {Migration{1, "jobs and events", kJobsAndEvents},
-                                    Migration{2, "index of ended jobs", kEndedIndex}};
+                                    Migration{2, "index of ended jobs", kEndedIndex},
+                                    Migration{3, "tenants, ranks, reuse, thinning", kTenants}};
 
 }  // namespace
 

@@ -31,10 +31,10 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
     if (listener_ != nullptr) news_.emplace(options.where, own_, *listener_);
   }
 
-  absl::StatusOr<Created> create(const Change& job, std::int64_t queue_limit) override {
+  absl::StatusOr<Created> create(const Change& job, const QueueLimits& limits) override {
     Created created;
     const absl::Status status = pool_.transact([&](PostgresSession& session) -> absl::Status {
-      auto made = create_job(session, job, queue_limit);
+      auto made = create_job(session, job, limits, counts_);
       if (!made.ok()) return made.status();
       created = *std::move(made);
       return created.existed ? absl::OkStatus() : tell_others(session, created.record);
@@ -68,15 +68,17 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
     return after;
   }
 
-  absl::StatusOr<std::optional<JobRecord>> lease_next(Time now, const DecideLease& decide) override {
+  absl::StatusOr<std::optional<JobRecord>> lease_next(Time now, const OrderTenants& order,
+                                                      const DecideLease& decide) override {
     for (int attempt = 1;; ++attempt) {
       std::optional<JobRecord> leased;
+      std::vector<std::string> asked;
       const absl::Status status = pool_.transact(
-          [&](PostgresSession& session) { return lease_within(session, now, decide, leased); });
+          [&](PostgresSession& session) { return lease_within(session, now, order, decide, leased, asked); });
       if (!status.ok()) return status;
       if (leased) committed(*leased, true);
       if (leased || attempt == kLeaseTries) return leased;
-      const auto more = pool_.with([&](PostgresSession& session) { return any_queued(session, now); });
+      const auto more = pool_.with([&](PostgresSession& session) { return any_queued(session, asked, now); });
       if (!more.ok()) return more.status();
       if (!*more) return leased;
     }
@@ -93,6 +95,17 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
     });
     if (status.ok() && listener_ != nullptr) listener_->removed(job_id);
     return status;
+  }
+
+  absl::StatusOr<int> thin_progress(Time until, int most_jobs) override {
+    int thinned = 0;
+    const absl::Status status = pool_.transact([&](PostgresSession& session) -> absl::Status {
+      const auto jobs = thin_ended_jobs(session, until, most_jobs);
+      if (jobs.ok()) thinned = *jobs;
+      return jobs.status();
+    });
+    if (!status.ok()) return status;
+    return thinned;
   }
 
  private:
@@ -113,9 +126,10 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
                   {own_, queued ? News::Kind::kQueued : News::Kind::kOtherState, record.job.job_id()});
   }
 
-  absl::Status lease_within(PostgresSession& session, Time now, const DecideLease& decide,
-                            std::optional<JobRecord>& leased) const {
-    auto row = first_queued(session, now);
+  absl::Status lease_within(PostgresSession& session, Time now, const OrderTenants& order,
+                            const DecideLease& decide, std::optional<JobRecord>& leased,
+                            std::vector<std::string>& asked) const {
+    auto row = first_in_order(session, now, order, &asked);
     if (!row.ok()) return row.status();
     if (!row->has_value()) return absl::OkStatus();
     // A sequence never gives a number twice, also when the transaction is rolled back.
@@ -129,13 +143,19 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
     return status;
   }
 
-  static absl::StatusOr<bool> any_queued(PostgresSession& session, Time now) {
-    PostgresStatement some(session, "SELECT 1 FROM jobs WHERE state = 1 AND not_before_ms <= ? LIMIT 1");
-    const bool there = some.bind(to_ms(now)).step();
-    if (!some.status().ok()) return some.status();
-    return there;
+  static absl::StatusOr<bool> any_queued(PostgresSession& session, const std::vector<std::string>& tenants,
+                                         Time now) {
+    for (const std::string& tenant : tenants) {
+      PostgresStatement some(
+          session, "SELECT 1 FROM jobs WHERE state = 1 AND tenant = ? AND not_before_ms <= ? LIMIT 1");
+      const bool there = some.bind_text(tenant).bind(to_ms(now)).step();
+      if (!some.status().ok()) return some.status();
+      if (there) return true;
+    }
+    return false;
   }
 
+  QueueCounts counts_{/*others_write=*/true};
   PostgresPool pool_;
   CommitListener* const listener_;
   const std::string own_;

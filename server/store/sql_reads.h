@@ -4,6 +4,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,6 +33,11 @@ class SqlReads : public JobStore {
                                                    int limit) final {
     return source().with(
         [&](Database& database) { return read_events(database, job_id, after_sequence, limit); });
+  }
+
+  absl::StatusOr<std::optional<JobRecord>> find_reusable(const std::string& tenant,
+                                                         const std::string& reuse_key) final {
+    return source().with([&](Database& database) { return newest_reusable(database, tenant, reuse_key); });
   }
 
   absl::StatusOr<std::int64_t> queued_before(const std::string& job_id) final {

@@ -19,10 +19,10 @@ class SqliteStore final : public SqlReads<SqliteDatabase, SqliteReaders> {
               CommitListener* listener)
       : writer_(std::move(database), kLargestGroup), readers_(file), listener_(listener) {}
 
-  absl::StatusOr<Created> create(const Change& job, std::int64_t queue_limit) override {
+  absl::StatusOr<Created> create(const Change& job, const QueueLimits& limits) override {
     Created created;
     const auto work = [&](SqliteDatabase& database) -> absl::Status {
-      auto made = create_job(database, job, queue_limit);
+      auto made = create_job(database, job, limits, counts_);
       if (!made.ok()) return made.status();
       created = *std::move(made);
       return absl::OkStatus();
@@ -59,10 +59,11 @@ class SqliteStore final : public SqlReads<SqliteDatabase, SqliteReaders> {
     return after;
   }
 
-  absl::StatusOr<std::optional<JobRecord>> lease_next(Time now, const DecideLease& decide) override {
+  absl::StatusOr<std::optional<JobRecord>> lease_next(Time now, const OrderTenants& order,
+                                                      const DecideLease& decide) override {
     std::optional<JobRecord> leased;
     const auto work = [&](SqliteDatabase& database) -> absl::Status {
-      auto row = first_queued(database, now);
+      auto row = first_in_order(database, now, order);
       if (!row.ok()) return row.status();
       if (!row->has_value()) return absl::OkStatus();
       SqliteStatement next_token(
@@ -95,6 +96,17 @@ class SqliteStore final : public SqlReads<SqliteDatabase, SqliteReaders> {
     return writer_.write(work, tell);
   }
 
+  absl::StatusOr<int> thin_progress(Time until, int most_jobs) override {
+    int thinned = 0;
+    const auto work = [&](SqliteDatabase& database) -> absl::Status {
+      const auto jobs = thin_ended_jobs(database, until, most_jobs);
+      if (jobs.ok()) thinned = *jobs;
+      return jobs.status();
+    };
+    if (absl::Status status = writer_.write(work, [] {}); !status.ok()) return status;
+    return thinned;
+  }
+
  private:
   SqliteReaders& source() override { return readers_; }
 
@@ -107,6 +119,7 @@ class SqliteStore final : public SqlReads<SqliteDatabase, SqliteReaders> {
                        : status;
   }
 
+  QueueCounts counts_{/*others_write=*/false};
   SqliteWriter writer_;
   SqliteReaders readers_;
   CommitListener* const listener_;

@@ -9,7 +9,8 @@
  *   ghost     what only the properties look at
  *
  * Time: a lease has run out when `fresh` has been taken away since the last heartbeat, which can happen at any
- * moment. So no property rests on how long anything takes.
+ * moment. So no property rests on how long anything takes, nor on whether a heartbeat without news prolongs the
+ * lease, nor on how far a cancellation shortens it.
  *
  * Properties
  *   safe   no acknowledged job is lost; a repeated submission makes no second job; no result of an attempt that
@@ -25,6 +26,7 @@
  *   QUEUE_IN_MEMORY        what is queued is known to the process alone
  *   LOSSES_DO_NOT_COUNT    a lost attempt does not count, so that a job that kills its workers goes on for ever
  *   CANCEL_IS_FORGOTTEN    the reaper queues a job again although its user has cancelled it
+ *   UNDELIVERED_FORGETS    so does the server when a job did not reach its worker
  */
 
 #define MAX_ATTEMPTS 2
@@ -36,7 +38,7 @@
 #define MOST_LEASES 6      /* numbers begin again after it: more than a job can have, but with LOSSES_DO_NOT_COUNT */
 
 mtype = { absent, queued, running, succeeded, failed, cancelled };
-mtype = { result_kept, result_failed, result_retryable, handed_back };
+mtype = { result_kept, result_failed, result_retryable, handed_back, undelivered };
 
 #define ended(s) (s == succeeded || s == failed || s == cancelled)
 
@@ -158,6 +160,8 @@ idle:
     if
     :: my_token = token; my_attempt = attempt; holds = true
     :: skip                /* the answer gets lost: nobody works, and the lease runs out */
+    :: hand_backs < MAX_HAND_BACKS && nfull(network) ->   /* or the server sees that the worker has hung up */
+       hand_backs++; network!token, attempt, undelivered
     fi
   }
   if
@@ -211,6 +215,13 @@ active proctype Completions() {
          if
          :: says == handed_back && !cancel_requested -> queue_again()
          :: says == handed_back && cancel_requested -> lose_attempt()
+         :: says == undelivered && !cancel_requested -> queue_again()
+         :: says == undelivered && cancel_requested ->
+#ifdef UNDELIVERED_FORGETS
+           queue_again()
+#else
+           fresh = false   /* the reaper ends it */
+#endif
          :: says == result_retryable -> lose_attempt()
          :: says == result_kept ->
            assert(a == attempt);

@@ -16,6 +16,7 @@
 #include <sstream>
 #include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "worker/agent/backoff.h"
@@ -48,14 +49,18 @@ std::string default_name() {
 Result<std::shared_ptr<grpc::Channel>> open_channel(const AgentOptions& options) {
   std::shared_ptr<grpc::ChannelCredentials> credentials = grpc::InsecureChannelCredentials();
   if (!options.tls_root_cert.empty()) {
-    std::ifstream in(options.tls_root_cert);
-    std::stringstream pem;
-    pem << in.rdbuf();
-    if (!in || pem.str().empty()) {
-      return io_error(fmt::format("{}: no TLS root certificate can be read", options.tls_root_cert.string()));
-    }
     grpc::SslCredentialsOptions ssl;
-    ssl.pem_root_certs = pem.str();
+    for (const auto& [file, pem] : {std::pair(&options.tls_root_cert, &ssl.pem_root_certs),
+                                    std::pair(&options.tls_cert, &ssl.pem_cert_chain),
+                                    std::pair(&options.tls_key, &ssl.pem_private_key)}) {
+      if (file->empty()) continue;
+      std::ifstream in(*file);
+      std::stringstream text;
+      text << in.rdbuf();
+      *pem = text.str();
+      if (!in || pem->empty())
+        return io_error(fmt::format("{}: no TLS certificate or key can be read there", file->string()));
+    }
     credentials = grpc::SslCredentials(ssl);
   }
   grpc::ChannelArguments arguments;
@@ -82,24 +87,28 @@ class Slot {
     *request_.mutable_wait() = google::protobuf::util::TimeUtil::SecondsToDuration(kLeaseWait.count());
   }
 
-  void run(const std::stop_token& stop) {
+  // Ends on drain as soon as it has no job, on stop at once.
+  void run(const std::stop_token& stop, const std::stop_token& drain) {
     agent::Backoff backoff(milliseconds(100), milliseconds(5000), std::random_device{}());
     bool answered = true;
-    while (!stop.stop_requested()) {
+    std::stop_source no_more;
+    const std::stop_callback on_stop(stop, [&] { no_more.request_stop(); });
+    const std::stop_callback on_drain(drain, [&] { no_more.request_stop(); });
+    while (!no_more.stop_requested()) {
       v1::LeaseResponse response;
       const auto asked = steady_clock::now();
-      const grpc::Status status = lease(stop, response);
+      const grpc::Status status = lease(no_more.get_token(), response);
       if (status.ok() && response.has_assignment()) {
         backoff.reset();
         agent::run_assignment(options_, folder_, {*worker_, *artifacts_}, response.assignment(), stop);
       } else if (status.ok() && steady_clock::now() - asked >= kShortestPoll) {
         backoff.reset();
-      } else if (!stop.stop_requested()) {
+      } else if (!no_more.stop_requested()) {
         if (answered && !status.ok()) {
           spdlog::warn("{} gives no jobs: {}; asking again until it does", options_.server_address,
                        status.error_message());
         }
-        agent::wait_unless_stopped(stop, backoff.next());
+        agent::wait_unless_stopped(no_more.get_token(), backoff.next());
       }
       if (status.ok() && !answered) spdlog::info("{} answers again", options_.server_address);
       answered = status.ok();
@@ -132,12 +141,17 @@ Status AgentOptions::validate() const {
   if (memory_limit_mb != 0 && memory_limit_mb < 64) {
     return invalid_input(fmt::format("memory limit: {} MB is neither 0 nor at least 64", memory_limit_mb));
   }
+  if (tls_cert.empty() != tls_key.empty())
+    return invalid_input("the worker's TLS certificate and its key must be given together");
+  if (!tls_cert.empty() && tls_root_cert.empty())
+    return invalid_input("the worker's TLS certificate needs that of the authority beside it (--tls-ca)");
+  if (drain && *drain < milliseconds(0)) return invalid_input("the time to drain is negative");
   if (worker_name.size() > 96) return invalid_input("the worker's name is longer than 96 bytes");
   return ok_status();
 }
 
 Status run_agent_until(const AgentOptions& options, const std::shared_ptr<grpc::Channel>& channel,
-                       std::stop_token stop) {
+                       std::stop_token stop, std::stop_token drain) {
   const std::string instance_id = random_hex();
   std::filesystem::path root = options.work_root;
   if (root.empty()) {
@@ -158,7 +172,7 @@ Status run_agent_until(const AgentOptions& options, const std::shared_ptr<grpc::
   std::vector<std::thread> threads;
   for (int i = 0; i < options.slots; ++i) {
     threads.emplace_back([&, i] {
-      Slot(options, fmt::format("{}-{}", name, i), instance_id, folder->path(), channel).run(stop);
+      Slot(options, fmt::format("{}-{}", name, i), instance_id, folder->path(), channel).run(stop, drain);
     });
   }
   for (std::thread& thread : threads) thread.join();
@@ -172,13 +186,22 @@ int run_agent(const AgentOptions& options) {
     const auto channel = open_channel(options);
     if (channel) {
       std::stop_source stop;
+      std::stop_source drain;
       std::atomic<bool> done = false;
       std::thread waiting([&] {
+        std::optional<steady_clock::time_point> hand_back;
         while (!done) {
-          if (signals.came_within(milliseconds(100)) && stop.request_stop()) spdlog::info("stopping");
+          const bool came = signals.came_within(milliseconds(100));
+          const bool first = came && drain.request_stop();
+          if (first) {
+            spdlog::info("draining: running jobs go on, no more are taken; a further signal hands them back");
+            if (options.drain) hand_back = steady_clock::now() + *options.drain;
+          }
+          const bool over = (came && !first) || (hand_back && steady_clock::now() >= *hand_back);
+          if (over && stop.request_stop()) spdlog::info("stopping");
         }
       });
-      status = run_agent_until(options, *channel, stop.get_token());
+      status = run_agent_until(options, *channel, stop.get_token(), drain.get_token());
       done = true;
       waiting.join();
     } else {

@@ -49,18 +49,26 @@ grpc::Status disk_error(const std::filesystem::path& path, const char* what) {
 
 grpc::Status stopped() { return {grpc::StatusCode::CANCELLED, "told to stop"}; }
 
+void show(const LeaseProof& lease, grpc::ClientContext& context) {
+  if (lease.job_id.empty()) return;
+  context.AddMetadata("skinframe-job-id", lease.job_id);
+  context.AddMetadata("skinframe-fencing-token", std::to_string(lease.fencing_token));
+}
+
 // Answers that tell to try again though the server is there; so many, then the answer stands.
 constexpr int kMaxRefusals = 100;
 
 // Calls attempt(context) until it gives something else than UNAVAILABLE (or a code that `again` takes for
 // it).
 template <class Attempt, class Again>
-grpc::Status until_answered(const std::stop_token& stop, Attempt attempt, Again again) {
+grpc::Status until_answered(const std::stop_token& stop, const LeaseProof& lease, Attempt attempt,
+                            Again again) {
   Backoff backoff(std::chrono::milliseconds(100), std::chrono::milliseconds(2000), std::random_device{}());
   int refusals = 0;
   while (!stop.stop_requested()) {
     grpc::ClientContext context;
     context.set_deadline(std::chrono::system_clock::now() + kStreamDeadline);
+    show(lease, context);
     grpc::Status status;
     {
       const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
@@ -95,13 +103,14 @@ Result<FileDigest> digest_file(const std::filesystem::path& path) {
 }
 
 grpc::Status download_artifact(v1::ArtifactService::StubInterface& stub, const std::string& sha256,
-                               const std::filesystem::path& path, std::stop_token stop) {
+                               const std::filesystem::path& path, std::stop_token stop,
+                               const LeaseProof& lease) {
   std::ofstream out(path, std::ios::binary | std::ios::trunc);
   if (!out) return disk_error(path, "cannot be written");
   Sha256 hash;
   std::int64_t received = 0;
   const grpc::Status status = until_answered(
-      stop,
+      stop, lease,
       [&](grpc::ClientContext& context) {
         v1::DownloadArtifactRequest request;
         request.set_sha256(sha256);
@@ -131,12 +140,13 @@ grpc::Status download_artifact(v1::ArtifactService::StubInterface& stub, const s
 }
 
 grpc::Status upload_artifact(v1::ArtifactService::StubInterface& stub, const std::filesystem::path& path,
-                             const FileDigest& digest, std::stop_token stop) {
+                             const FileDigest& digest, std::stop_token stop, const LeaseProof& lease) {
   std::int64_t kept = 0;
   bool kept_part_was_wrong = false;
   const auto attempt = [&](grpc::ClientContext& context) -> grpc::Status {
     grpc::ClientContext stat_context;
     stat_context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(10));
+    show(lease, stat_context);
     v1::StatArtifactRequest stat_request;
     stat_request.set_sha256(digest.sha256);
     v1::StatArtifactResponse stat;
@@ -163,7 +173,7 @@ grpc::Status upload_artifact(v1::ArtifactService::StubInterface& stub, const std
     writer->WritesDone();
     return writer->Finish();
   };
-  return until_answered(stop, attempt, [&](const grpc::Status& status) {
+  return until_answered(stop, lease, attempt, [&](const grpc::Status& status) {
     // DATA_LOSS: the part that the server had kept was not of this file. It has dropped it: once more, from
     // the beginning.
     if (status.error_code() == grpc::StatusCode::DATA_LOSS && kept > 0) {

@@ -21,15 +21,22 @@ struct FileDigest {
   std::int64_t size_bytes = 0;
 };
 
+// For which job, and by which lease, a worker asks: its files are those of the job's tenant.
+struct LeaseProof {
+  std::string job_id;  // empty: for no job
+  std::int64_t fencing_token = 0;
+};
+
 Result<FileDigest> digest_file(const std::filesystem::path& path);
 
 // The file at path is whole and has the hash that names it, or the status is not OK:
 // NOT_FOUND, DATA_LOSS (what came has another hash), CANCELLED (stop), INTERNAL (the disk), or the server's.
 grpc::Status download_artifact(v1::ArtifactService::StubInterface& stub, const std::string& sha256,
-                               const std::filesystem::path& path, std::stop_token stop);
+                               const std::filesystem::path& path, std::stop_token stop,
+                               const LeaseProof& lease = {});
 
 // Stat first: what the server has costs nothing, an interrupted upload goes on.
 grpc::Status upload_artifact(v1::ArtifactService::StubInterface& stub, const std::filesystem::path& path,
-                             const FileDigest& digest, std::stop_token stop);
+                             const FileDigest& digest, std::stop_token stop, const LeaseProof& lease = {});
 
 }  // namespace skinframe::agent

@@ -73,6 +73,7 @@ class Attempt {
 
  private:
   const std::string& id() const { return assignment_.job_id(); }
+  LeaseProof proof() const { return {id(), assignment_.fencing_token()}; }
 
   // Fills in the completion's files.
   Conclusion work(v1::CompleteRequest& completion) {
@@ -109,7 +110,7 @@ class Attempt {
       return give_up(refused ? v1::REASON_UNSUPPORTED : v1::REASON_INTERNAL, request.error().message, false);
     }
     const grpc::Status fetched = download_artifact(stubs_.artifacts, input_sha256(assignment_.spec()), input,
-                                                   heartbeater_.stop_token());
+                                                   heartbeater_.stop_token(), proof());
     if (!fetched.ok())
       return transfer_failed(
           is_mesh ? "the mesh could not be fetched" : "the frame problem could not be fetched", fetched);
@@ -130,7 +131,7 @@ class Attempt {
     for (const auto& [printer, file] : chosen) {
       const fs::path path = folder / (std::to_string(files.size()) + ".json");
       const grpc::Status fetched =
-          download_artifact(stubs_.artifacts, file.sha256(), path, heartbeater_.stop_token());
+          download_artifact(stubs_.artifacts, file.sha256(), path, heartbeater_.stop_token(), proof());
       if (fetched.error_code() == grpc::StatusCode::NOT_FOUND) {
         spdlog::warn("job={} {} of the earlier job is gone", id(), file.path());
         continue;
@@ -226,7 +227,7 @@ class Attempt {
       if (!digest) return give_up(v1::REASON_CRASHED, digest.error().message, true);
       if (digest->size_bytes == 0) continue;  // the store holds no empty artifact
       const grpc::Status sent =
-          upload_artifact(stubs_.artifacts, out / relative, *digest, heartbeater_.stop_token());
+          upload_artifact(stubs_.artifacts, out / relative, *digest, heartbeater_.stop_token(), proof());
       if (!sent.ok()) {
         completion.clear_files();
         return transfer_failed(fmt::format("result {} could not be uploaded", relative.string()), sent);

@@ -4,7 +4,9 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <iostream>
+#include <optional>
 
 #include "worker/agent/agent.h"
 #include "worker/app/local_verbs.h"
@@ -29,12 +31,19 @@ int main(int argc, char** argv) {
       "  skinframe-worker sample --list                     the bodies that ship with the program");
 
   AgentOptions agent;
-  std::string work_root, tls_ca;
+  std::string work_root, tls_ca, tls_cert, tls_key;
+  std::optional<double> drain_seconds;
   app.add_option("--server", agent.server_address, "Server to work for, HOST:PORT")->capture_default_str();
   app.add_option("--slots", agent.slots, "Jobs at a time")->check(CLI::Range(1, 64))->capture_default_str();
   app.add_option("--work-dir", work_root,
                  "Folder for the files of running jobs (default: a folder under TMPDIR)");
   app.add_option("--tls-ca", tls_ca, "PEM file of the certificate authority; turns TLS on");
+  app.add_option("--tls-cert", tls_cert, "PEM certificate chain by which the server knows this worker");
+  app.add_option("--tls-key", tls_key, "PEM private key of that certificate");
+  app.add_option("--drain", drain_seconds,
+                 "Seconds that running jobs may go on after the first SIGTERM before they are handed back; "
+                 "0: none (default: to their end, or to a second SIGTERM)")
+      ->check(CLI::Range(0.0, 1e6));
   app.add_option("--memory-limit-mb", agent.memory_limit_mb,
                  "Address space of one job's process; 0: no limit")
       ->check(CLI::NonNegativeNumber)
@@ -61,6 +70,9 @@ int main(int argc, char** argv) {
   if (const auto code = profiles.run()) return *code;
   agent.work_root = work_root;
   agent.tls_root_cert = tls_ca;
+  agent.tls_cert = tls_cert;
+  agent.tls_key = tls_key;
+  if (drain_seconds) agent.drain = std::chrono::milliseconds(std::llround(*drain_seconds * 1000));
   if (auto valid = agent.validate(); !valid) {
     std::cerr << "skinframe-worker: " << valid.error().message << '\n';
     return 2;

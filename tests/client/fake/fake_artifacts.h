@@ -28,9 +28,12 @@ class FakeArtifacts final : public v1::ArtifactService::Service {
   // SHA-256, where a test has one at hand: an upload of another content is then DATA_LOSS.
   std::function<std::string(const std::string&)> hash;
 
-  grpc::Status Stat(grpc::ServerContext*, const v1::StatArtifactRequest* request,
+  std::vector<std::string> leases_shown;  // "JOB TOKEN" of each call's metadata; " " where there is none
+
+  grpc::Status Stat(grpc::ServerContext* context, const v1::StatArtifactRequest* request,
                     v1::StatArtifactResponse* response) override {
     const std::lock_guard lock(mutex);
+    note_lease(*context);
     const auto it = complete.find(request->sha256());
     if (it != complete.end()) {
       response->set_complete(true);
@@ -41,12 +44,13 @@ class FakeArtifacts final : public v1::ArtifactService::Service {
     return grpc::Status::OK;
   }
 
-  grpc::Status Upload(grpc::ServerContext*, grpc::ServerReader<v1::UploadArtifactRequest>* reader,
+  grpc::Status Upload(grpc::ServerContext* context, grpc::ServerReader<v1::UploadArtifactRequest>* reader,
                       v1::UploadArtifactResponse* response) override {
     v1::UploadArtifactRequest part;
     if (!reader->Read(&part) || !part.has_header()) return {grpc::StatusCode::INVALID_ARGUMENT, "no header"};
     const auto header = part.header();
     const std::lock_guard lock(mutex);
+    note_lease(*context);
     upload_offsets.push_back(header.offset());
     std::string& kept = partial[header.sha256()];
     if (header.offset() != static_cast<std::int64_t>(kept.size())) {
@@ -74,10 +78,11 @@ class FakeArtifacts final : public v1::ArtifactService::Service {
     return grpc::Status::OK;
   }
 
-  grpc::Status Download(grpc::ServerContext*, const v1::DownloadArtifactRequest* request,
+  grpc::Status Download(grpc::ServerContext* context, const v1::DownloadArtifactRequest* request,
                         grpc::ServerWriter<v1::DownloadArtifactResponse>* writer) override {
     constexpr std::size_t kChunk = 1000;
     const std::lock_guard lock(mutex);
+    note_lease(*context);
     download_offsets.push_back(request->offset());
     const auto it = complete.find(request->sha256());
     if (it == complete.end()) return {grpc::StatusCode::NOT_FOUND, "no such artifact"};
@@ -91,6 +96,15 @@ class FakeArtifacts final : public v1::ArtifactService::Service {
       }
     }
     return grpc::Status::OK;
+  }
+
+ private:
+  void note_lease(const grpc::ServerContext& context) {
+    const auto shown = [&](const char* key) {
+      const auto it = context.client_metadata().find(key);
+      return it == context.client_metadata().end() ? "" : std::string(it->second.data(), it->second.size());
+    };
+    leases_shown.push_back(shown("skinframe-job-id") + " " + shown("skinframe-fencing-token"));
   }
 };
 

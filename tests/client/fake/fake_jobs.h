@@ -23,6 +23,9 @@ class FakeJobs final : public v1::JobService::Service {
   std::vector<std::size_t> break_after;    // events before the k-th stream breaks; none: it stays whole
   std::vector<v1::SubmitJobRequest> submissions;  // each attempt
   std::vector<grpc::Status> refusals;             // of the first submissions
+  bool name_delay = true;                         // with a refusal
+  std::string authorization;                      // metadata of the last submission
+  bool tell_of_gaps = false;                      // where events are missing
   bool hang = false;               // watches stay open after their events, and CancelJob does not answer
   std::condition_variable called;  // with the mutex: one of the two below has risen
   int hanging_watches = 0;
@@ -50,8 +53,11 @@ class FakeJobs final : public v1::JobService::Service {
                          v1::SubmitJobResponse* response) override {
     const std::lock_guard lock(mutex);
     submissions.push_back(*request);
+    if (const auto it = context->client_metadata().find("authorization");
+        it != context->client_metadata().end())
+      authorization.assign(it->second.data(), it->second.size());
     if (submissions.size() <= refusals.size()) {
-      context->AddTrailingMetadata("retry-after-ms", "1234");
+      if (name_delay) context->AddTrailingMetadata("retry-after-ms", "1234");
       return refusals[submissions.size() - 1];
     }
     *response->mutable_job() = job;
@@ -72,8 +78,14 @@ class FakeJobs final : public v1::JobService::Service {
     const std::size_t stream = watched_from.size();
     watched_from.push_back(request->after_sequence());
     std::size_t sent = 0;
+    std::int64_t position = request->after_sequence();
     for (const v1::JobEvent& event : events) {
       if (event.sequence() <= request->after_sequence()) continue;
+      if (tell_of_gaps && event.sequence() != position + 1) {
+        context->AddTrailingMetadata("first-available-sequence", std::to_string(event.sequence()));
+        return {grpc::StatusCode::OUT_OF_RANGE, "thinned out"};
+      }
+      position = event.sequence();
       if (stream < break_after.size() && sent == break_after[stream]) {
         return {grpc::StatusCode::UNAVAILABLE, "connection lost"};
       }

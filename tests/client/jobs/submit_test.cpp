@@ -37,6 +37,19 @@ TEST_F(SubmitJob, AFullQueueIsAskedAgainAfterTheDelayThatTheServerNames) {
   EXPECT_THAT(clock_.waits, testing::ElementsAre(milliseconds(1234)));
 }
 
+TEST_F(SubmitJob, AQuotaThatWaitingDoesNotMendIsToldAtOnce) {
+  jobs_.refusals = {{grpc::StatusCode::RESOURCE_EXHAUSTED, "quota of artifact bytes"}};
+  jobs_.name_delay = false;
+  EXPECT_EQ(submit_job(connection_, {}).failure().kind, FailureKind::kUnreachable);
+  EXPECT_EQ(jobs_.submissions.size(), 1u);
+}
+
+TEST_F(SubmitJob, TheTokenGoesWithEachCall) {
+  connection_.token = "secret";
+  ASSERT_TRUE(submit_job(connection_, {}).ok());
+  EXPECT_EQ(jobs_.authorization, "Bearer secret");
+}
+
 TEST_F(SubmitJob, AQueueThatStaysFullIsUnreachable) {
   jobs_.refusals.assign(100, {grpc::StatusCode::RESOURCE_EXHAUSTED, "queue full"});
   EXPECT_EQ(submit_job(connection_, {}).failure().kind, FailureKind::kUnreachable);

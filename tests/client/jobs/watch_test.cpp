@@ -62,6 +62,18 @@ TEST_F(WatchJob, AGapIsAFailureNotASilence) {
   EXPECT_THAT(seen_, testing::ElementsAre(1, 2, 3));
 }
 
+TEST_F(WatchJob, ThinnedEventsAreToldOfAndTheWatchGoesOnBehindThem) {
+  jobs_.tell_of_gaps = true;
+  jobs_.events.erase(jobs_.events.begin() + 2, jobs_.events.begin() + 7);
+  std::vector<std::int64_t> gone;
+  WatchOptions options;
+  options.on_thinned = [&](std::int64_t first, std::int64_t last) { gone = {first, last}; };
+  ASSERT_TRUE(watch(options).ok());
+  EXPECT_THAT(seen_, testing::ElementsAre(1, 2, 8));
+  EXPECT_THAT(gone, testing::ElementsAre(3, 7));
+  EXPECT_THAT(clock_.waits, testing::IsEmpty());
+}
+
 TEST_F(WatchJob, TheHandlerMayHaveEnough) {
   const auto watched = watch_job(connection_, "j1", {}, [&](const v1::JobEvent& event) {
     seen_.push_back(event.sequence());

@@ -9,6 +9,11 @@ void set_deadline(grpc::ClientContext& context) {
   context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
 }
 
+void ApiTest::prepare(grpc::ClientContext& context) const {
+  set_deadline(context);
+  if (!token_.empty()) context.AddMetadata("authorization", "Bearer " + token_);
+}
+
 void ApiTest::start() {
   options_.listen = "127.0.0.1:0";
   options_.data = folder_.path();
@@ -38,7 +43,7 @@ v1::UploadArtifactRequest::Header ApiTest::header(const std::string& content, st
 grpc::Status ApiTest::upload(const v1::UploadArtifactRequest::Header& header,
                              const std::vector<std::string>& chunks) {
   grpc::ClientContext context;
-  set_deadline(context);
+  prepare(context);
   v1::UploadArtifactResponse response;
   const auto writer = artifacts_->Upload(&context, &response);
   v1::UploadArtifactRequest message;
@@ -68,7 +73,7 @@ v1::JobSpec ApiTest::spec() {
 
 grpc::Status ApiTest::submit(const v1::SubmitJobRequest& request, v1::SubmitJobResponse* response) {
   grpc::ClientContext context;
-  set_deadline(context);
+  prepare(context);
   v1::SubmitJobResponse ignored;
   return jobs_->SubmitJob(&context, request, response != nullptr ? response : &ignored);
 }
@@ -76,6 +81,7 @@ grpc::Status ApiTest::submit(const v1::SubmitJobRequest& request, v1::SubmitJobR
 std::string ApiTest::submit() {
   v1::SubmitJobRequest request;
   *request.mutable_spec() = spec();
+  request.set_no_reuse(true);
   v1::SubmitJobResponse response;
   const grpc::Status status = submit(request, &response);
   EXPECT_TRUE(status.ok()) << status.error_message();
@@ -84,7 +90,7 @@ std::string ApiTest::submit() {
 
 v1::Job ApiTest::job(const std::string& job_id) {
   grpc::ClientContext context;
-  set_deadline(context);
+  prepare(context);
   v1::GetJobRequest request;
   request.set_job_id(job_id);
   v1::Job job;
@@ -95,7 +101,7 @@ v1::Job ApiTest::job(const std::string& job_id) {
 
 grpc::Status ApiTest::cancel(const std::string& job_id) {
   grpc::ClientContext context;
-  set_deadline(context);
+  prepare(context);
   v1::CancelJobRequest request;
   request.set_job_id(job_id);
   v1::Job job;
@@ -104,7 +110,7 @@ grpc::Status ApiTest::cancel(const std::string& job_id) {
 
 v1::Assignment ApiTest::lease() {
   grpc::ClientContext context;
-  set_deadline(context);
+  prepare(context);
   v1::LeaseRequest request;
   request.set_worker_id("worker");
   request.set_instance_id("instance");
@@ -117,7 +123,7 @@ v1::Assignment ApiTest::lease() {
 
 grpc::Status ApiTest::beat(const v1::Assignment& assignment, v1::HeartbeatResponse* response, int progress) {
   grpc::ClientContext context;
-  set_deadline(context);
+  prepare(context);
   v1::HeartbeatRequest request;
   request.set_job_id(assignment.job_id());
   request.set_fencing_token(assignment.fencing_token());
@@ -141,7 +147,7 @@ v1::CompleteRequest ApiTest::outcome(const v1::Assignment& assignment, v1::JobSt
 
 grpc::Status ApiTest::complete(const v1::CompleteRequest& request) {
   grpc::ClientContext context;
-  set_deadline(context);
+  prepare(context);
   v1::CompleteResponse response;
   return workers_->Complete(&context, request, &response);
 }
@@ -149,7 +155,7 @@ grpc::Status ApiTest::complete(const v1::CompleteRequest& request) {
 grpc::Status ApiTest::watch(const std::string& job_id, std::int64_t after,
                             std::vector<v1::JobEvent>* events) {
   grpc::ClientContext context;
-  set_deadline(context);
+  prepare(context);
   v1::WatchJobRequest request;
   request.set_job_id(job_id);
   request.set_after_sequence(after);

@@ -26,6 +26,8 @@ class ApiTest : public testing::Test {
   void start();
   void restart();
 
+  void prepare(grpc::ClientContext& context) const;  // deadline and token
+
   // Uploads the content in one chunk; returns its name.
   std::string put(const std::string& content);
   grpc::Status upload(const v1::UploadArtifactRequest::Header& header,
@@ -34,7 +36,7 @@ class ApiTest : public testing::Test {
 
   v1::JobSpec spec();  // valid, its mesh uploaded
   grpc::Status submit(const v1::SubmitJobRequest& request, v1::SubmitJobResponse* response = nullptr);
-  std::string submit();  // spec(); the job's id
+  std::string submit();  // spec(), to be run whatever was before; the job's id
   v1::Job job(const std::string& job_id);
   grpc::Status cancel(const std::string& job_id);
 
@@ -48,6 +50,7 @@ class ApiTest : public testing::Test {
   // All events until the stream ends.
   grpc::Status watch(const std::string& job_id, std::int64_t after, std::vector<v1::JobEvent>* events);
 
+  std::string token_;  // who the next calls come from; empty: from nobody known
   ManualClock clock_;
   RandomIds ids_;
   TemporaryFolder folder_;

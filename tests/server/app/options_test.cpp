@@ -64,6 +64,11 @@ TEST(Options, WhatIsWrongIsNamed) {
   expect_refused({"--data", "d", "--max-attempts", "0"}, "--max-attempts");
   expect_refused({"--data", "d", "--lease", "0"}, "--lease");
   expect_refused({"--data", "d", "--heartbeat", "11"}, "--heartbeat");
+  expect_refused({"--data", "d", "--ageing", "0"}, "--ageing");
+  expect_refused({"--data", "d", "--drain", "-1"}, "--drain");
+  expect_refused({"--data", "d", "--keep-progress-hours", "-1"}, "--keep-progress-hours");
+  expect_refused({"--data", "d", "--client-ca", "ca.crt"}, "--tls-cert");
+  expect_refused({"--data", "d", "--tls-cert", "c", "--tls-key", "k", "--client-ca", "ca.crt"}, "--tenants");
 }
 
 TEST(Options, HelpAndVersionEndWithZeroUnknownFlagsWithTwo) {

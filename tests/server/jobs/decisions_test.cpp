@@ -63,6 +63,36 @@ TEST(Cancel, LeavesAnEndedJobAsItIs) {
   EXPECT_FALSE(decide_cancel(done, kNoon, kPolicy)->has_value());
 }
 
+TEST(Reuse, EndsAtOnceWithTheEarlierResultAndSaysWhose) {
+  JobRecord earlier =
+      after(decide_complete(running(), completion("job", 7, v1::JOB_STATE_SUCCEEDED), kNoon, kPolicy));
+  earlier.job.add_files()->set_path("report.json");
+  earlier.job.add_printers()->set_printer_id("p");
+  const Change reused = decide_reuse(example_record("second"), earlier, kNoon, kPolicy);
+  EXPECT_EQ(reused.record.job.state(), v1::JOB_STATE_SUCCEEDED);
+  EXPECT_EQ(reused.record.job.reused_job_id(), "job");
+  EXPECT_EQ(reused.record.job.files(0).path(), "report.json");
+  EXPECT_EQ(reused.record.job.printers_size(), 1);
+  EXPECT_TRUE(reused.record.job.has_end_time());
+  ASSERT_EQ(reused.events.size(), 1u);
+  EXPECT_EQ(reused.events[0].state().state(), v1::JOB_STATE_SUCCEEDED);
+  EXPECT_NE(reused.events[0].state().detail().find("job job"), std::string::npos);
+  const Change third = decide_reuse(example_record("third"), reused.record, kNoon, kPolicy);
+  EXPECT_EQ(third.record.job.reused_job_id(), "job") << "the job that was run, not one that reused it";
+}
+
+TEST(Undelivered, IsQueuedAgainWithoutLossAndOnlyByItsOwnToken) {
+  const JobRecord again = after(decide_undelivered(running(7), 7, kNoon));
+  EXPECT_EQ(again.job.state(), v1::JOB_STATE_QUEUED);
+  EXPECT_EQ(again.lost_attempts, 0);
+  EXPECT_FALSE(decide_undelivered(running(8), 7, kNoon)->has_value());
+  EXPECT_FALSE(decide_undelivered(queued(), 7, kNoon)->has_value());
+  const JobRecord asked = after(decide_cancel(running(7), kNoon, kPolicy));
+  const JobRecord left = after(decide_undelivered(asked, 7, kNoon));
+  EXPECT_EQ(left.job.state(), v1::JOB_STATE_RUNNING) << "a cancelled job is never queued again";
+  EXPECT_EQ(after(decide_lease_expired(left, kNoon, kPolicy)).job.state(), v1::JOB_STATE_CANCELLED);
+}
+
 TEST(Lease, CountsTheAttemptAndCarriesTheToken) {
   const JobRecord job = running(42);
   EXPECT_EQ(job.job.attempt(), 1);
@@ -223,7 +253,7 @@ TEST(LeaseExpiry, OfAJobAskedToStopCancelsIt) {
 TEST(Deadline, EndsAQueuedJobAndStopsARunningOne) {
   JobRecord record = example_record("job");
   record.job.mutable_spec()->mutable_deadline()->set_seconds(60);
-  const JobRecord job = decide_submit(record, kNoon).record;
+  const JobRecord job = decide_submit(record, kNoon, kPolicy).record;
   EXPECT_FALSE(decide_deadline(job, kNoon + Milliseconds(59'999))->has_value());
   const JobRecord late = after(decide_deadline(job, kNoon + seconds(60)));
   EXPECT_EQ(late.job.state(), v1::JOB_STATE_FAILED);

@@ -20,7 +20,7 @@ class LeaseDeskTest : public testing::Test, public CommitListener {
  protected:
   void SetUp() override {
     store_ = *open_sqlite_store(folder_.path() / "jobs.sqlite", this);
-    desk_.emplace(*store_, executor_, clock_, AttemptPolicy{});
+    desk_.emplace(*store_, executor_, clock_, AttemptPolicy{}, tenants_);
   }
   void TearDown() override {
     desk_->close();
@@ -48,6 +48,7 @@ class LeaseDeskTest : public testing::Test, public CommitListener {
   TemporaryFolder folder_;
   ManualClock clock_;
   Executor executor_{4};
+  const TenantDirectory tenants_;
   std::unique_ptr<JobStore> store_;
   std::optional<LeaseDesk> desk_;
 };
@@ -109,6 +110,23 @@ TEST_F(LeaseDeskTest, AWorkerThatHungUpGetsNoJob) {
   EXPECT_TRUE(absl::IsCancelled(gone.get().status()));
   submit("a");
   EXPECT_EQ((*ask("alive", seconds(10)).get())->lease.worker_id, "alive");
+}
+
+// The worker hangs up while the store is being asked for it, or right after the answer.
+TEST_F(LeaseDeskTest, AJobThatDidNotReachItsWorkerIsQueuedAgainAtOnceAndNoAttemptIsLost) {
+  for (int round = 0; round < 200; ++round) {
+    LeaseDesk::Ticket ticket = 0;
+    const std::string id = "job-" + std::to_string(round);
+    auto gone = ask("gone", seconds(10), &ticket);
+    submit(id);
+    desk_->withdraw(ticket);
+    const auto answer = gone.get();
+    if (answer.ok()) desk_->undelivered(**answer);
+    const auto next = ask("alive", seconds(10)).get();
+    ASSERT_TRUE(next.ok() && next->has_value());
+    EXPECT_EQ((*next)->job.job_id(), id);
+    EXPECT_EQ((*next)->lost_attempts, 0);
+  }
 }
 
 TEST_F(LeaseDeskTest, AJobWhoseBackoffPassedIsFoundByTheDuty) {

@@ -21,7 +21,7 @@ class Leases : public testing::Test {
     reaper_.emplace(*store_, policy_, clock_.now() - policy_.lease);  // a server that has been up for a while
   }
   void submit(JobRecord record) {
-    ASSERT_TRUE(store_->create(decide_submit(record, clock_.now()), 100).ok());
+    ASSERT_TRUE(store_->create(decide_submit(record, clock_.now(), policy_), 100).ok());
   }
   std::int64_t lease() {
     const auto job = store_->lease_next(clock_.now(), [&](const JobRecord& record, std::int64_t token) {

@@ -19,7 +19,8 @@ class Retention : public testing::Test {
  protected:
   Retention()
       : store_(*open_sqlite_store(folder_.path() / "jobs.sqlite", nullptr)),
-        artifacts_(*ArtifactStore::open(folder_.path() / "artifacts", ArtifactLimits{})) {}
+        shelves_(*TenantArtifacts::open(folder_.path() / "artifacts", kDefaultTenant, ArtifactLimits{})),
+        artifacts_(*shelves_->of(kDefaultTenant)) {}
 
   std::string put(const std::string& content) {
     const std::string name = sha256_hex(content);
@@ -42,7 +43,8 @@ class Retention : public testing::Test {
 
   TemporaryFolder folder_;
   std::unique_ptr<JobStore> store_;
-  std::unique_ptr<ArtifactStore> artifacts_;
+  std::unique_ptr<TenantArtifacts> shelves_;
+  ArtifactStore* artifacts_;
 };
 
 TEST_F(Retention, AnEndedJobIsKeptForItsTimeAndThenForgotten) {
@@ -72,7 +74,7 @@ TEST_F(Retention, ManyEndedJobsAreForgottenRoundAfterRound) {
 }
 
 TEST_F(Retention, AnArtifactThatAJobRefersToStaysHoweverOldItIs) {
-  ArtifactCleaner duty(*store_, *artifacts_, kDay, kHour);
+  ArtifactCleaner duty(*store_, *shelves_, kDay, kHour);
   const std::string mesh = put("mesh");
   const std::string result = put("result");
   const std::string nobodys = put("nobody's");
@@ -99,7 +101,7 @@ TEST_F(Retention, AnArtifactThatAJobRefersToStaysHoweverOldItIs) {
 }
 
 TEST_F(Retention, WhatWasUsedLatelyStaysAlsoWithoutAJob) {
-  ArtifactCleaner duty(*store_, *artifacts_, kDay, kHour);
+  ArtifactCleaner duty(*store_, *shelves_, kDay, kHour);
   const std::string mesh = put("mesh");
   ASSERT_TRUE(duty.run_once(days_later(0) + kHour).ok());
   EXPECT_TRUE(there(mesh));
@@ -117,7 +119,7 @@ TEST_F(Retention, WhatIsAskedForBetweenTheLookAndTheRemovalStays) {
 }
 
 TEST_F(Retention, AnAbandonedPartGoesAndOneThatIsBeingWrittenStays) {
-  ArtifactCleaner duty(*store_, *artifacts_, kDay, kHour);
+  ArtifactCleaner duty(*store_, *shelves_, kDay, kHour);
   const std::string abandoned = sha256_hex("abandoned");
   {
     auto upload = artifacts_->upload(abandoned, 9, 0);

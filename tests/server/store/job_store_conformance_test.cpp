@@ -132,6 +132,75 @@ TEST_P(JobStoreConformance, AFullQueueRefusesUntilAJobLeavesIt) {
   EXPECT_TRUE(store_->create(example_job("b"), 1).ok());
 }
 
+TEST_P(JobStoreConformance, ATenantsQuotaRefusesIsNamedAndTouchesNoOther) {
+  const auto create_of = [&](const std::string& id, const std::string& tenant) {
+    Change job = example_job(id);
+    job.record.job.set_tenant(tenant);
+    return store_->create(job, {kNoLimit, 2}).status();
+  };
+  ASSERT_TRUE(create_of("a", "north").ok());
+  ASSERT_TRUE(create_of("b", "north").ok());
+  const absl::Status refused = create_of("c", "north");
+  EXPECT_TRUE(absl::IsResourceExhausted(refused));
+  EXPECT_NE(refused.message().find("north"), absl::string_view::npos) << refused;
+  EXPECT_NE(refused.message().find("quota"), absl::string_view::npos) << refused;
+  EXPECT_TRUE(create_of("c", "south").ok());
+  ASSERT_TRUE(cancel("a").ok());
+  EXPECT_TRUE(create_of("d", "north").ok());
+}
+
+TEST_P(JobStoreConformance, RequestIdsAreTheTenantsOwn) {
+  for (const char* tenant : {"default", "north"}) {
+    Change job = example_job(std::string("of-") + tenant);
+    job.record.request_id = "r";
+    job.record.job.set_tenant(tenant);
+    const auto created = store_->create(job, kNoLimit);
+    ASSERT_TRUE(created.ok()) << created.status();
+    EXPECT_FALSE(created->existed);
+    EXPECT_EQ(store_->get(job.record.job.job_id())->request_id, "r");
+    EXPECT_EQ(store_->get(job.record.job.job_id())->job.tenant(), tenant);
+  }
+  EXPECT_EQ(listed({.tenant = "north"}), (std::vector<std::string>{"of-north"}));
+}
+
+TEST_P(JobStoreConformance, LeasesInTheOrderOfTenantsThatIsAskedFor) {
+  for (const char* id : {"a1", "a2", "b1", "c1"}) {
+    Change job = example_job(id);
+    job.record.job.set_tenant(std::string(1, id[0]));
+    ASSERT_TRUE(store_->create(job, kNoLimit).ok());
+  }
+  std::vector<TenantLoad> seen;
+  const auto lease_of = [&](const std::vector<std::string>& order) {
+    const auto job = store_->lease_next(
+        kNoon,
+        [&](const std::vector<TenantLoad>& waiting) {
+          seen = waiting;
+          return order;
+        },
+        [](const JobRecord& record, std::int64_t token) { return leased(record, token); });
+    EXPECT_TRUE(job.ok()) << job.status();
+    return job.ok() && *job ? (*job)->job.job_id() : "none";
+  };
+  EXPECT_EQ(lease_of({"c", "a", "b"}), "c1");
+  EXPECT_EQ(lease_of({"c", "a", "b"}), "a1");
+  EXPECT_EQ(lease_of({}), "none");
+  ASSERT_EQ(seen.size(), 2u) << "c has nothing queued any more";
+  EXPECT_EQ(seen[0].tenant, "a");
+  EXPECT_EQ(seen[0].running, 1);
+  EXPECT_EQ(seen[1].running, 0);
+  EXPECT_EQ(lease_of({"b"}), "b1");
+}
+
+TEST_P(JobStoreConformance, WaitingOutweighsPriorityInTheEndButNotBefore) {
+  const auto create_at = [&](const std::string& id, int priority, Milliseconds after) {
+    ASSERT_TRUE(store_->create(example_job(id, priority, kNoon + after), kNoLimit).ok());
+  };
+  create_at("low", 0, Milliseconds(0));
+  create_at("soon", 2, kPolicy.ageing);                        // one point ahead
+  create_at("late", 2, 2 * kPolicy.ageing + Milliseconds(1));  // low has aged past it
+  for (const char* expected : {"soon", "low", "late"}) EXPECT_EQ(lease()->job.job_id(), expected);
+}
+
 TEST_P(JobStoreConformance, LeasesByPriorityThenBySubmission) {
   create("low", -1);
   create("first");
@@ -265,7 +334,7 @@ TEST_P(JobStoreConformance, ListFiltersByStateAndByAllLabels) {
   const auto create_labelled = [&](const std::string& id, const std::map<std::string, std::string>& labels) {
     JobRecord record = example_record(id);
     record.job.mutable_spec()->mutable_labels()->insert(labels.begin(), labels.end());
-    ASSERT_TRUE(store_->create(decide_submit(record, kNoon), kNoLimit).ok());
+    ASSERT_TRUE(store_->create(decide_submit(record, kNoon, kPolicy), kNoLimit).ok());
   };
   create_labelled("a", {{"farm", "north"}, {"user", "eva"}});
   create_labelled("b", {{"farm", "north"}});
@@ -322,6 +391,66 @@ TEST_P(JobStoreConformance, FindsEndedJobsByTheTimeTheyEnded) {
   EXPECT_EQ(*store_->ended_jobs(kNoon, 10), (std::vector<std::string>{"b"}));
   EXPECT_EQ(*store_->ended_jobs(kNoon + Milliseconds(5), 10), (std::vector<std::string>{"b", "a"}));
   EXPECT_EQ(*store_->ended_jobs(kNoon + Milliseconds(5), 1), (std::vector<std::string>{"b"}));
+}
+
+TEST_P(JobStoreConformance, FindsTheNewestWholeResultOfTheSameRequestOfTheSameTenant) {
+  const auto ended = [&](const std::string& id, const std::string& tenant, v1::JobState state,
+                         v1::Reason reason = v1::REASON_UNSPECIFIED) {
+    Change job = example_job(id);
+    job.record.reuse_key = "key";
+    job.record.job.set_tenant(tenant);
+    ASSERT_TRUE(store_->create(job, kNoLimit).ok());
+    const auto token = lease()->lease.fencing_token;
+    ASSERT_TRUE(store_
+                    ->modify(id,
+                             [&](const JobRecord& r) {
+                               return decide_complete(r, completion(id, token, state, reason), kNoon,
+                                                      kPolicy);
+                             })
+                    .ok());
+  };
+  const auto found = [&](const std::string& tenant, const std::string& key) {
+    const auto job = store_->find_reusable(tenant, key);
+    EXPECT_TRUE(job.ok()) << job.status();
+    return job.ok() && *job ? (*job)->job.job_id() : "none";
+  };
+  ended("failed", "default", v1::JOB_STATE_FAILED, v1::REASON_INFEASIBLE);
+  ended("partial", "default", v1::JOB_STATE_SUCCEEDED, v1::REASON_PARTIAL);
+  EXPECT_EQ(found("default", "key"), "none");
+  ended("first", "default", v1::JOB_STATE_SUCCEEDED);
+  ended("second", "default", v1::JOB_STATE_SUCCEEDED);
+  ended("theirs", "north", v1::JOB_STATE_SUCCEEDED);
+  EXPECT_EQ(found("default", "key"), "second");
+  EXPECT_EQ(found("north", "key"), "theirs");
+  EXPECT_EQ(found("default", "another key"), "none");
+  Change reused = decide_reuse(example_record("reused"), *store_->get("second"), kNoon, kPolicy);
+  ASSERT_TRUE(store_->create(reused, 0).ok()) << "a full queue is no obstacle to what is not queued";
+  reopen();
+  EXPECT_EQ(store_->get("reused")->job.reused_job_id(), "second");
+  EXPECT_EQ(store_->get("reused")->job.state(), v1::JOB_STATE_SUCCEEDED);
+}
+
+TEST_P(JobStoreConformance, ThinningTakesTheProgressOfEndedJobsAndNothingElse) {
+  for (const char* id : {"ended", "running"}) create(id);
+  const auto first = lease();
+  const auto second = lease();
+  ASSERT_TRUE(first && second);
+  for (const auto& job : {*first, *second})
+    ASSERT_TRUE(beat(job.job.job_id(), job.lease.fencing_token, 3).ok());  // events 3, 4, 5
+  auto done = completion("ended", first->lease.fencing_token, v1::JOB_STATE_SUCCEEDED);
+  done.add_printers()->set_printer_id("p");
+  ASSERT_TRUE(
+      store_->modify("ended", [&](const JobRecord& r) { return decide_complete(r, done, kNoon, kPolicy); })
+          .ok());
+  EXPECT_EQ(*store_->thin_progress(kNoon - Milliseconds(1), 10), 0);
+  EXPECT_EQ(*store_->thin_progress(kNoon, 10), 1);
+  EXPECT_EQ(*store_->thin_progress(kNoon, 10), 0) << "once is enough";
+  std::vector<std::int64_t> left;
+  const auto events = store_->events("ended", 0, 100);
+  for (const v1::JobEvent& event : *events) left.push_back(event.sequence());
+  EXPECT_EQ(left, (std::vector<std::int64_t>{1, 2, 6, 7}));
+  EXPECT_EQ(store_->get("ended")->job.last_sequence(), 7);
+  EXPECT_EQ(store_->events("running", 0, 100)->size(), 5u);
 }
 
 TEST_P(JobStoreConformance, TellsTheNewestSequenceOfManyJobsAtOnce) {

@@ -28,6 +28,7 @@ class FakeWorkerService final : public v1::WorkerService::Service {
   std::mutex mutex;
   std::condition_variable changed;
   std::deque<v1::Assignment> queue;
+  int asked = 0;
   std::vector<v1::HeartbeatRequest> heartbeats;
   std::vector<v1::CompleteRequest> completions;
   bool cancel = false;
@@ -41,6 +42,8 @@ class FakeWorkerService final : public v1::WorkerService::Service {
   grpc::Status Lease(grpc::ServerContext* context, const v1::LeaseRequest*,
                      v1::LeaseResponse* response) override {
     std::unique_lock lock(mutex);
+    ++asked;
+    changed.notify_all();
     while (queue.empty() && !stopping && !context->IsCancelled()) {
       changed.wait_for(lock, std::chrono::milliseconds(5));
     }
@@ -99,7 +102,7 @@ class AgentTest : public testing::Test {
     const auto channel =
         grpc::CreateChannel("127.0.0.1:" + std::to_string(port_), grpc::InsecureChannelCredentials());
     agent_ = std::thread([this, channel] {
-      const Status ended = run_agent_until(options_, channel, stop_.get_token());
+      const Status ended = run_agent_until(options_, channel, stop_.get_token(), drain_.get_token());
       EXPECT_TRUE(ended.ok());
     });
   }
@@ -150,6 +153,7 @@ class AgentTest : public testing::Test {
   int port_ = 0;
   std::unique_ptr<grpc::Server> server_;
   std::stop_source stop_;
+  std::stop_source drain_;
   std::thread agent_;
 };
 
@@ -240,6 +244,38 @@ TEST_F(AgentTest, AStoppedWorkerHandsItsJobBackAtOnce) {
   EXPECT_EQ(done.detail(), "worker stopped");
 }
 
+TEST_F(AgentTest, ADrainedWorkerFinishesItsJobAndTakesNoMore) {
+  const std::string go_on = (folder_.path() / "go-on").string();
+  assign();
+  start_agent("while [ ! -e " + go_on + " ]; do :; done\n" + kGoodJob);
+  ASSERT_TRUE(wait_for([&] { return !workers_.heartbeats.empty(); }));
+  drain_.request_stop();
+  assign();  // nobody takes it
+  std::ofstream(go_on).flush();
+  EXPECT_EQ(completion().state(), v1::JOB_STATE_SUCCEEDED);
+  agent_.join();
+  const std::lock_guard lock(workers_.mutex);
+  EXPECT_EQ(workers_.queue.size(), 1u);
+  EXPECT_EQ(workers_.completions.size(), 1u);
+}
+
+TEST_F(AgentTest, ADrainedWorkerWithoutAJobEndsAtOnce) {
+  start_agent(kGoodJob);
+  ASSERT_TRUE(wait_for([&] { return workers_.asked > 0; }));
+  drain_.request_stop();
+  agent_.join();
+}
+
+TEST_F(AgentTest, AWorkerShowsItsLeaseWithEveryFile) {
+  assign();
+  start_agent(kGoodJob);
+  completion();
+  stop_agent();
+  const std::lock_guard lock(artifacts_.mutex);
+  EXPECT_FALSE(artifacts_.leases_shown.empty());
+  for (const std::string& lease : artifacts_.leases_shown) EXPECT_EQ(lease, "job-1 7");
+}
+
 // The server's threads in this process have no signal blocked, as a library's have not.
 TEST_F(AgentTest, AStopSignalEndsTheAgentCleanlyWhicheverThreadItReaches) {
   options_.server_address = "127.0.0.1:" + std::to_string(port_);
@@ -248,7 +284,13 @@ TEST_F(AgentTest, AStopSignalEndsTheAgentCleanlyWhicheverThreadItReaches) {
   int code = -1;
   agent_ = std::thread([&] { code = run_agent(options_); });
   ASSERT_TRUE(wait_for([&] { return !workers_.heartbeats.empty(); }));
-  ::kill(::getpid(), SIGTERM);
+  // The first drains, a further one hands back; two that come at once count as one.
+  const auto ended = [&] { return !workers_.completions.empty(); };
+  do {
+    ::kill(::getpid(), SIGTERM);
+    std::unique_lock lock(workers_.mutex);
+    workers_.changed.wait_for(lock, std::chrono::milliseconds(200), ended);
+  } while (!ended());
   agent_.join();
   EXPECT_EQ(code, 0);
   EXPECT_EQ(completion().detail(), "worker stopped");
@@ -333,6 +375,9 @@ TEST_F(AgentTest, AMeshWithAnotherContentIsRefused) {
 TEST(AgentOptions, OutOfRangeIsNamed) {
   AgentOptions options;
   EXPECT_TRUE(options.validate().ok());
+  options.tls_cert = "worker.crt";
+  EXPECT_THAT(options.validate().error().message, testing::HasSubstr("key"));
+  options.tls_cert.clear();
   options.slots = 0;
   EXPECT_THAT(options.validate().error().message, testing::HasSubstr("slots"));
   options.slots = 1;

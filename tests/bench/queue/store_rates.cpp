@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/bench/queue/store_rates.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/server/fixture/example_job.h"
+
+namespace skinframe::bench {
+namespace {
+
+using server::Change;
+using server::JobRecord;
+using SteadyClock = std::chrono::steady_clock;
+
+constexpr std::int64_t kNoLimit = 10'000'000;
+constexpr int kFillers = 64;
+
+double seconds_since(SteadyClock::time_point begin) {
+  return std::chrono::duration<double>(SteadyClock::now() - begin).count();
+}
+
+void check(const absl::Status& status) {
+  if (!status.ok()) throw std::runtime_error(std::string(status.message()));
+}
+
+// Runs step(0 .. count - 1) on so many threads; how many a second. The first exception is passed on.
+double rate_of(int count, int callers, const std::function<void(int)>& step) {
+  std::atomic<int> next = 0;
+  std::atomic<bool> failed = false;
+  std::string why;
+  std::vector<std::thread> threads;
+  const auto begin = SteadyClock::now();
+  for (int i = 0; i < callers; ++i) {
+    threads.emplace_back([&] {
+      try {
+        for (int n = next++; n < count && !failed; n = next++) step(n);
+      } catch (const std::exception& error) {
+        if (!failed.exchange(true)) why = error.what();
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  if (failed) throw std::runtime_error(why);
+  return count / seconds_since(begin);
+}
+
+JobRecord lease(server::JobStore& store) {
+  auto leased = store.lease_next(server::kNoon, [](const JobRecord& record, std::int64_t token) {
+    return server::leased(record, token);
+  });
+  check(leased.status());
+  if (!leased->has_value()) throw std::runtime_error("a lease found nothing though jobs are queued");
+  return **std::move(leased);
+}
+
+}  // namespace
+
+Rates measure_rates(server::JobStore& store, int jobs, int callers) {
+  Rates rates;
+  rates.enqueue = rate_of(jobs, callers, [&](int n) {
+    check(store.create(server::example_job("job-" + std::to_string(n)), kNoLimit).status());
+  });
+  std::vector<std::int64_t> tokens(static_cast<std::size_t>(jobs));
+  std::vector<std::string> ids(static_cast<std::size_t>(jobs));
+  rates.lease = rate_of(jobs, callers, [&](int n) {
+    const JobRecord job = lease(store);
+    tokens[static_cast<std::size_t>(n)] = job.lease.fencing_token;
+    ids[static_cast<std::size_t>(n)] = job.job.job_id();
+  });
+  rates.complete = rate_of(jobs, callers, [&](int n) {
+    const auto at = static_cast<std::size_t>(n);
+    const auto done = server::completion(ids[at], tokens[at], v1::JOB_STATE_SUCCEEDED);
+    check(store
+              .modify(ids[at],
+                      [&](const JobRecord& record) {
+                        return server::decide_complete(record, done, server::kNoon, {});
+                      })
+              .status());
+  });
+  return rates;
+}
+
+LeaseCost measure_lease_cost(server::JobStore& store, int queued, int tenants, int leases) {
+  rate_of(queued, kFillers, [&](int n) {
+    Change job = server::example_job("job-" + std::to_string(n), n % 21 - 10);
+    job.record.job.set_tenant("tenant-" + std::to_string(n % tenants));
+    check(store.create(job, kNoLimit).status());
+  });
+  std::vector<double> taken;
+  for (int i = 0; i < leases; ++i) {
+    const auto begin = SteadyClock::now();
+    const JobRecord job = lease(store);
+    taken.push_back(1e6 * seconds_since(begin));
+    check(store
+              .modify(job.job.job_id(),
+                      [&](const JobRecord& record) {
+                        return server::decide_undelivered(record, job.lease.fencing_token, server::kNoon);
+                      })
+              .status());
+  }
+  std::sort(taken.begin(), taken.end());
+  return {taken[taken.size() / 2], taken[taken.size() * 95 / 100]};
+}
+
+}  // namespace skinframe::bench
