@@ -29,7 +29,8 @@ class ClockSteps : public testing::Test {
     reaper_.emplace(*store_, policy_, clock_.now() - policy_.lease);
   }
   void submit(const std::string& job_id) {
-    ASSERT_TRUE(store_->create(decide_submit(example_record(job_id), clock_.now()), 1000).ok());
+    ASSERT_TRUE(
+        store_->create(decide_submit(example_record(job_id), clock_.now(), AttemptPolicy{}), 1000).ok());
   }
   std::optional<Held> lease() {
     const auto job = store_->lease_next(clock_.now(), [&](const JobRecord& record, std::int64_t token) {

@@ -50,6 +50,35 @@ TEST(Migrations, AreNumberedFromOneWithoutGap) {
   for (const Migration& step : sqlite_migrations()) EXPECT_EQ(step.version, expected++);
 }
 
+// A store as servers without tenants wrote it.
+TEST(Migrations, JobsOfBeforeTenantsAreTheDefaultTenantsInTheirOldOrder) {
+  TemporaryFolder folder;
+  const auto file = folder.path() / "db";
+  {
+    const auto database = open_database(file);
+    ASSERT_TRUE(migrate(*database, sqlite_migrations().first(2)).ok());
+    for (const auto& [id, priority] : {std::pair("low", 0), std::pair("high", 5)}) {
+      const JobRecord record = example_record(id, priority);
+      SqliteStatement insert(
+          *database,
+          "INSERT INTO jobs VALUES (NULL, ?, ?, '', ?, ?, ?, 1700000000000, NULL, 1, 0, '', x'', NULL, NULL, "
+          "0, 0, 0, 0, 0, 0, '', '', 0, '')");
+      insert.bind_text(id).bind_text(id).bind_blob(record.job.spec().SerializeAsString());
+      ASSERT_TRUE(insert.bind_blob("").bind(priority).run().ok());
+    }
+  }
+  auto store = open_sqlite_store(file, nullptr);
+  ASSERT_TRUE(store.ok()) << store.status();
+  EXPECT_EQ((*store)->get("low")->job.tenant(), "default");
+  EXPECT_EQ((*store)->get("low")->request_id, "low");
+  for (const char* expected : {"high", "low"}) {
+    const auto next = (*store)->lease_next(
+        kNoon, [](const JobRecord& job, std::int64_t token) { return leased(job, token); });
+    ASSERT_TRUE(next.ok() && next->has_value()) << next.status();
+    EXPECT_EQ((*next)->job.job_id(), expected);
+  }
+}
+
 TEST(Migrations, ContinueFromTheVersionThatIsThere) {
   TemporaryFolder folder;
   const auto database = open_database(folder.path() / "db");

@@ -112,7 +112,7 @@ class AgentTest : public testing::Test {
     if (agent_.joinable()) agent_.join();
   }
 
-  void assign() {
+  void assign(std::int64_t heartbeat_ms = 20) {
     v1::Assignment a;
     a.set_job_id("job-1");
     a.set_fencing_token(7);
@@ -121,7 +121,7 @@ class AgentTest : public testing::Test {
     a.mutable_spec()->add_printers();
     a.add_printers()->set_process(v1::PRINT_PROCESS_POWDER);
     a.add_materials();
-    *a.mutable_heartbeat_interval() = TimeUtil::MillisecondsToDuration(20);
+    *a.mutable_heartbeat_interval() = TimeUtil::MillisecondsToDuration(heartbeat_ms);
     *a.mutable_lease_duration() = TimeUtil::SecondsToDuration(10);
     const std::lock_guard lock(workers_.mutex);
     workers_.queue.push_back(a);
@@ -215,6 +215,17 @@ TEST_F(AgentTest, ACancelledJobIsStoppedAndCompletedAsCancelled) {
   workers_.cancel = true;
   assign();
   start_agent("while :; do :; done\n");
+  EXPECT_EQ(completion().state(), v1::JOB_STATE_CANCELLED);
+}
+
+TEST_F(AgentTest, ACancellationArrivesHoweverRarelyTheLeaseNeedsProlonging) {
+  assign(3'600'000);
+  start_agent("while :; do :; done\n");
+  ASSERT_TRUE(wait_for([&] { return !workers_.heartbeats.empty(); }));
+  {
+    const std::lock_guard lock(workers_.mutex);
+    workers_.cancel = true;
+  }
   EXPECT_EQ(completion().state(), v1::JOB_STATE_CANCELLED);
 }
 
