@@ -72,11 +72,16 @@ ALTER TABLE jobs ADD COLUMN thinned INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE events ADD COLUMN progress INTEGER NOT NULL DEFAULT 0;
 UPDATE jobs SET rank_ms = create_ms - priority * 600000;
 DROP INDEX jobs_queue;
-CREATE INDEX jobs_queue   ON jobs (tenant, rank_ms, ordinal) WHERE state = 1;
-CREATE INDEX jobs_running ON jobs (tenant) WHERE state = 2;
-CREATE INDEX jobs_reuse   ON jobs (tenant, reuse_key, ordinal) WHERE state = 3 AND reuse_key IS NOT NULL;
-CREATE INDEX jobs_thin    ON jobs (end_ms) WHERE state > 2 AND thinned = 0;
-CREATE INDEX jobs_tenant  ON jobs (tenant, ordinal);
+DROP INDEX jobs_deadline;
+DROP INDEX jobs_lease;
+DROP INDEX jobs_state;
+CREATE INDEX jobs_queue    ON jobs (tenant, rank_ms, ordinal) WHERE state = 1;
+CREATE INDEX jobs_deadline ON jobs (state, deadline_ms) WHERE deadline_ms IS NOT NULL;
+CREATE INDEX jobs_lease    ON jobs (state, lease_expires_ms) WHERE state = 2;
+CREATE INDEX jobs_state    ON jobs (state, tenant, ordinal);
+CREATE INDEX jobs_reuse    ON jobs (tenant, reuse_key, ordinal) WHERE state = 3 AND reuse_key IS NOT NULL;
+CREATE INDEX jobs_thin     ON jobs (end_ms) WHERE state > 2 AND thinned = 0;
+CREATE INDEX jobs_tenant   ON jobs (tenant, ordinal);
 )sql";
 
 constexpr std::array kMigrations = {Migration{1, "jobs and events", kJobsAndEvents},

@@ -34,7 +34,7 @@ Sizes smallest() { return {30, 200, 16, 2'000, 100, 5, 60, 10, 50, 5}; }
 
 struct Figures {
   double cycle = 0;       // a second, batched
-  double flat_ratio = 0;  // lease from the deep queue over lease from the shallow one
+  double flat_ratio = 0;  // lease, or duties, with the deep queue over the same with the shallow one
   double pick_up_p95_ms = 0;
 };
 
@@ -56,16 +56,19 @@ Figures measure(Places& places, const std::string& kind, const Sizes& sizes) {
         kind, callers, rates.enqueue, rates.lease, rates.complete, rates.cycle(), sync));
     if (batched) figures.cycle = rates.cycle();
   }
-  std::map<int, double> median;
+  std::map<int, double> median, duties;
   for (const int queued : {sizes.shallow_queue, sizes.deep_queue}) {
     const auto store = places.fresh_store_in_memory(kind);
     const LeaseCost cost = measure_lease_cost(*store, queued, sizes.tenants, sizes.leases);
     median[queued] = cost.median_us;
-    say(fmt::format(
-        "| {} | lease from {} queued jobs of {} tenants, no disk | median {:.0f} us | p95 {:.0f} us |", kind,
-        queued, sizes.tenants, cost.median_us, cost.p95_us));
+    duties[queued] = cost.duties_median_us;
+    say(
+        fmt::format("| {} | lease from {} queued jobs of {} tenants, no disk | median {:.0f} us | p95 {:.0f} "
+                    "us | duties {:.0f} us |",
+                    kind, queued, sizes.tenants, cost.median_us, cost.p95_us, cost.duties_median_us));
   }
-  figures.flat_ratio = median[sizes.deep_queue] / median[sizes.shallow_queue];
+  figures.flat_ratio = std::max(median[sizes.deep_queue] / median[sizes.shallow_queue],
+                                duties[sizes.deep_queue] / duties[sizes.shallow_queue]);
   server::ServerOptions options;
   options.listen = "127.0.0.1:0";
   options.data = places.fresh_folder();
@@ -93,10 +96,11 @@ int run(const std::vector<std::string>& kinds, const std::filesystem::path& fold
                     all["sqlite"].cycle / all["postgres"].cycle));
   bool good = true;
   for (const auto& [kind, figures] : all) {
-    say(fmt::format(
-        "{}: a lease from the deep queue takes {:.2f} times one from the shallow queue; pick-up p95 "
-        "{:.1f} ms",
-        kind, figures.flat_ratio, figures.pick_up_p95_ms));
+    say(
+        fmt::format("{}: with the deep queue a lease, or the duties, take {:.2f} times as long as with the "
+                    "shallow one; pick-up p95 "
+                    "{:.1f} ms",
+                    kind, figures.flat_ratio, figures.pick_up_p95_ms));
     good = good && figures.flat_ratio <= most_flat_ratio && figures.pick_up_p95_ms <= most_pick_up_ms;
   }
   if (!good) say("over a limit that was asked for");

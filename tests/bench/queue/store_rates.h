@@ -20,6 +20,7 @@ Rates measure_rates(server::JobStore& store, int jobs, int callers);
 struct LeaseCost {
   double median_us = 0;
   double p95_us = 0;
+  double duties_median_us = 0;  // the look for expired leases and passed deadlines, ten times a second
 };
 
 // One caller leases `leases` jobs of a store that has `queued` of them, of `tenants` tenants; the queue is
