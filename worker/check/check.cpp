@@ -31,6 +31,8 @@ Verdict judge(const ExportedPrinter& result) {
   }
   const Surface outer(outer_mesh);
   claim_mesh(result, outer_mesh, cavity, outer, &verdict);
+  claim_walls(result, &verdict);
+  claim_crossings(result, &verdict);
   claim_package(result, &verdict);
   claim_beams(result, &verdict);
   claim_compact(result, &verdict);

@@ -25,6 +25,19 @@ struct EdgeCount {
 };
 EdgeCount count_edges(const TriangleMesh& mesh);
 
+// No wall between M and the cavity is thinner than the skin less a voxel where M is thicker, by rays from M.
+void claim_walls(const ExportedPrinter& result, Verdict* verdict);
+
+// Pairs of triangles that cut each other: both among the first `own`, and all others.
+struct Crossings {
+  std::size_t own = 0, added = 0;
+  Eigen::Vector3d first_mm = Eigen::Vector3d::Zero();  // of those added
+};
+Crossings count_crossings(const TriangleMesh& mesh, std::size_t own);
+
+// The solid adds no self-intersection to those of M beyond what the report says; nor does the compact mesh.
+void claim_crossings(const ExportedPrinter& result, Verdict* verdict);
+
 // skin-frame.3mf, frame-beams.3mf and skin-frame-compact.stl, where the report lists them: the same body, in
 // mm.
 void claim_package(const ExportedPrinter& result, Verdict* verdict);

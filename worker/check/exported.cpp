@@ -238,6 +238,7 @@ Status read_listed(const std::filesystem::path& path, const json& item, Exported
     if (!file) return file.error();
     printer->compact = weld_equal(file->mesh);
     const json& compact = item.at("compact");
+    printer->compact_crossings = compact.value("crossings", std::size_t{0});
     printer->compact_triangles = compact.at("triangles").get<std::size_t>();
     printer->compact_volume_mm3 = compact.at("volume_mm3").get<double>();
     printer->compact_deviation_mm = compact.at("deviation_mm").get<double>();
@@ -296,6 +297,7 @@ Result<Exported> read_exported(const std::filesystem::path& directory, RunContex
       if (!item.contains("termination")) continue;
       ExportedPrinter printer = parse_printer(item);
       printer.solid_triangles = report->at("mesh").at("triangles").get<std::size_t>();
+      printer.crossings = item.value("crossings", std::size_t{0});
       const auto folder = directory / printer.printer;
       if (!printer.solid()) {
         reading = folder / "frame.json";

@@ -82,11 +82,12 @@ struct ExportedPrinter {
   double density_g_cm3 = 0;
   Eigen::Vector3d tray_mm = Eigen::Vector3d::Zero();
   std::size_t solid_triangles = 0;
+  std::size_t crossings = 0;  // pairs of triangles, beside the input's own, that are said to cut each other
   ExportedFrame frame;
   std::optional<TriangleMesh> merged;  // vertices welded where equal; absent where the result has no mesh
   std::optional<TriangleMesh> compact;
   std::optional<Package> package, beams;  // skin-frame.3mf, frame-beams.3mf
-  std::size_t compact_triangles = 0;
+  std::size_t compact_triangles = 0, compact_crossings = 0;
   double compact_volume_mm3 = 0, compact_deviation_mm = 0;
   bool optimised() const { return termination != "NOT_OPTIMIZED"; }
   bool infeasible() const { return termination == "INFEASIBLE"; }

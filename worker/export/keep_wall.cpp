@@ -4,6 +4,10 @@
 #include <tbb/parallel_for.h>
 
 #include <atomic>
+#include <numeric>
+#include <vector>
+
+#include "worker/export/crossings.h"
 
 namespace skinframe {
 
@@ -28,6 +32,29 @@ int keep_wall(TriangleMesh& cavity, const TriangleTree& body, const Skin& skin, 
     }
   });
   return moved;
+}
+
+int count_cuts_of_surface(const TriangleMesh& printable, std::size_t outer, const Skin& skin) {
+  constexpr double kNearInSkins = 0.7;  // half the wall and a triangle's reach
+  const std::size_t count = printable.triangles.size();
+  std::vector<char> near(count, 0);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(outer, count, 4096), [&](const auto& range) {
+    for (std::size_t t = range.begin(); t < range.end(); ++t) {
+      const auto& [a, b, c] = printable.triangles[t];
+      const Eigen::Vector3d middle =
+          (printable.vertices[a] + printable.vertices[b] + printable.vertices[c]) / 3.0;
+      near[t] = -skin.field.at(middle) < kNearInSkins * skin.thickness_mm;
+    }
+  });
+  std::vector<int> among(outer);
+  std::iota(among.begin(), among.end(), 0);
+  for (std::size_t t = outer; t < count; ++t)
+    if (near[t]) among.push_back(static_cast<int>(t));
+  if (among.size() == outer) return 0;
+  int cuts = 0;
+  for (const auto& [s, t] : crossing_triangles(printable, among))
+    cuts += static_cast<std::size_t>(s) < outer && static_cast<std::size_t>(t) >= outer;
+  return cuts;
 }
 
 }  // namespace skinframe

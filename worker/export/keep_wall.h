@@ -19,4 +19,9 @@ int keep_wall(TriangleMesh& cavity, const TriangleTree& body, const Skin& skin, 
 // One vertex: where it is nearer to M than least_mm it goes to the distance to_mm. True when it moved.
 bool keep_wall(Eigen::Vector3d& vertex_mm, const TriangleTree& body, double least_mm, double to_mm);
 
+// Pairs of a triangle of M and one of the cavity that cut each other: where M has a void narrower than the
+// voxel the level set does not see it, and the cavity's corners may stand about it. The mesh: M's `outer`
+// triangles first.
+int count_cuts_of_surface(const TriangleMesh& printable, std::size_t outer, const Skin& skin);
+
 }  // namespace skinframe

@@ -167,6 +167,8 @@ Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Fr
   result.mesh.triangles.reserve(result.mesh.triangles.size() + cavity.triangles.size());
   for (const auto& t : cavity.triangles)
     result.mesh.triangles.push_back({first + t[0], first + t[2], first + t[1]});
+  result.crossings_left += count_cuts_of_surface(result.mesh, mesh.triangles.size(), skin);
+  steps.done("cuts");
   return result;
 }
 

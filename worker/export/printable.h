@@ -9,7 +9,7 @@
 // Guarantees, on the coordinates rounded to float as a binary STL stores them:
 //  1. Every edge has exactly two triangles, in opposite directions (when that holds for M).
 //  2. No triangle has two equal corners.
-//  3. The cavity's triangles do not cut each other, unless crossings_left says so.
+//  3. The cavity's triangles cut neither each other nor M's, unless crossings_left says so.
 //  4. volume_mm3 = volume of M - cavity_volume_mm3, both of the mesh as it is.
 #pragma once
 
@@ -40,7 +40,7 @@ struct PrintableMesh {
   double voxel_mm = 0.0;
   int pockets = 0;  // cavity pieces that stay
   int pockets_filled = 0;
-  int crossings_left = 0;  // pairs of the cavity's triangles that cut each other; 0 but in rare cases
+  int crossings_left = 0;  // pairs of triangles that cut each other, not both M's; 0 but in rare cases
   std::map<std::string, double> seconds;  // of the steps
 };
 

@@ -42,12 +42,14 @@ Status write_printable(const PrintableMesh& printable, const PreparedSolid& prep
   if (error) return io_error(fmt::format("{}: {}", folder.string(), error.message()));
   report->voxel_mm = printable.voxel_mm;
   report->triangles = printable.mesh.triangles.size();
+  report->crossings = printable.crossings_left;
   report->statistics.printed_volume_mm3 = printable.volume_mm3;
   report->statistics.printed_ratio = printable.volume_mm3 / prepared.solid.volume_mm3();
   report->statistics.weight_g = printable.volume_mm3 * printer.material.density_g_cm3 * 1e-3;
   if (printable.crossings_left > 0)
     report->warnings.push_back(fmt::format(
-        "{} pairs of triangles of the cavity cut each other; slicers take it, another --voxel may avoid it",
+        "{} pairs of triangles cut each other that the input did not bring; slicers take it, another --voxel "
+        "may avoid it",
         printable.crossings_left));
 
   if (auto written = write_stl(printable.mesh, folder / "skin-frame.stl"); !written) return written;

@@ -213,6 +213,7 @@ json to_json(const PrinterReport& report) {
   if (report.voxel_mm) {
     out["voxel_mm"] = *report.voxel_mm;
     out["triangles"] = report.triangles;
+    out["crossings"] = report.crossings;
     if (report.compact)
       out["compact"] = {{"triangles", report.compact->triangles},
                         {"volume_mm3", report.compact->volume_mm3},

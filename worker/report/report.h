@@ -105,6 +105,7 @@ struct PrinterReport {
   bool is_solid = false;           // thin everywhere: printed as it is, without a frame
   std::optional<double> voxel_mm;  // of the exported mesh
   std::size_t triangles = 0;       // of the exported mesh
+  int crossings = 0;               // pairs of its triangles that cut each other, beside M's own
   std::optional<CompactFacts> compact;
   std::vector<std::string> files;  // in the printer's folder
   std::vector<std::string> warnings;

@@ -5,12 +5,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "tests/worker/pipeline/small_job.h"
 
@@ -107,6 +109,64 @@ TEST_F(CheckTest, AMissingTriangleIsNotWatertight) {
 TEST_F(CheckTest, AWallThinnerThanTheSkinIsSeen) {
   EXPECT_THAT(denied_report([](json& printer) { printer["profile"]["skin_thickness_mm"] = 1.4; }),
               Names("skin thickness"));
+}
+
+// Changes the cavity's corners in the exported mesh; triangles that share a corner keep sharing it.
+void move_cavity(const fs::path& copy, const std::function<void(Eigen::Vector3f&)>& move) {
+  const std::size_t outer = read_json(copy / "report.json")["mesh"]["triangles"];
+  const fs::path stl = copy / kPrinter / "skin-frame.stl";
+  std::ifstream in(stl, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  for (std::size_t at = 84 + 50 * outer; at + 50 <= bytes.size(); at += 50) {
+    for (std::size_t corner = at + 12; corner < at + 48; corner += 12) {
+      Eigen::Vector3f place;
+      std::memcpy(place.data(), &bytes[corner], 12);
+      move(place);
+      std::memcpy(&bytes[corner], place.data(), 12);
+    }
+  }
+  std::ofstream(stl, std::ios::binary) << bytes;
+}
+
+TEST_F(CheckTest, AWallThinnedInTheFileIsSeenByRays) {
+  const auto names = denied(
+      [](const fs::path& copy) { move_cavity(copy, [](Eigen::Vector3f& place) { place.x() += 0.5f; }); });
+  EXPECT_THAT(names, Names("walls"));
+}
+
+TEST_F(CheckTest, ACavityThatCutsItselfOrTheSurfaceIsSeen) {
+  const auto itself = denied([](const fs::path& copy) {
+    bool is_first = true;
+    Eigen::Vector3f one;
+    move_cavity(copy, [&](Eigen::Vector3f& place) {
+      if (std::exchange(is_first, false)) one = place;
+      if (place == one) place += Eigen::Vector3f(2.1f, 1.7f, 1.3f);
+    });
+  });
+  EXPECT_THAT(itself, Names("no self-intersection beyond the input's"));
+  const auto surface = denied(
+      [](const fs::path& copy) { move_cavity(copy, [](Eigen::Vector3f& place) { place.x() += 5.0f; }); });
+  EXPECT_THAT(surface, Names("no self-intersection beyond the input's"));
+}
+
+TEST_F(CheckTest, ACompactMeshThatCutsItselfIsSeen) {
+  EXPECT_THAT(denied([](const fs::path& copy) {
+                const fs::path stl = copy / kPrinter / "skin-frame-compact.stl";
+                std::ifstream in(stl, std::ios::binary);
+                std::string bytes((std::istreambuf_iterator<char>(in)), {});
+                std::array<float, 3> one{}, place{};
+                std::memcpy(one.data(), &bytes[96], 12);
+                for (std::size_t at = 84; at + 50 <= bytes.size(); at += 50) {
+                  for (std::size_t corner = at + 12; corner < at + 48; corner += 12) {
+                    std::memcpy(place.data(), &bytes[corner], 12);
+                    if (place != one) continue;
+                    for (float& x : place) x += 4.0f;
+                    std::memcpy(&bytes[corner], place.data(), 12);
+                  }
+                }
+                std::ofstream(stl, std::ios::binary) << bytes;
+              }),
+              Names("the compact mesh adds no self-intersection"));
 }
 
 TEST_F(CheckTest, FalseVolumesAndWeightsAreSeen) {
