@@ -7,6 +7,7 @@
 #include <random>
 #include <utility>
 
+#include "server/store/postgres_herald.h"
 #include "server/store/postgres_migrations.h"
 #include "server/store/postgres_news.h"
 #include "server/store/postgres_pool.h"
@@ -27,7 +28,10 @@ std::string sender_name() {
 class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
  public:
   PostgresStore(const PostgresOptions& options, CommitListener* listener)
-      : pool_(options.where, options.most_sessions), listener_(listener), own_(sender_name()) {
+      : pool_(options.where, options.most_sessions),
+        listener_(listener),
+        own_(sender_name()),
+        herald_(options.where) {
     if (listener_ != nullptr) news_.emplace(options.where, own_, *listener_);
   }
 
@@ -37,7 +41,7 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
       auto made = create_job(session, job, limits, counts_);
       if (!made.ok()) return made.status();
       created = *std::move(made);
-      return created.existed ? absl::OkStatus() : tell_others(session, created.record);
+      return absl::OkStatus();
     });
     if (!status.ok()) return status;
     if (!created.existed) committed(created.record, true);
@@ -60,8 +64,7 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
       }
       after = std::move((*change)->record);
       state_changed = after.job.state() != row->record.job.state();
-      absl::Status written = write_change(session, row->ordinal, after, std::move((*change)->events));
-      return written.ok() && state_changed ? tell_others(session, after) : written;
+      return write_change(session, row->ordinal, after, std::move((*change)->events));
     });
     if (!status.ok()) return status;
     if (changed) committed(after, state_changed);
@@ -90,10 +93,11 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
       if (!row.ok()) return row.status();
       if (absl::Status allowed = permit(row->record); !allowed.ok()) return allowed;
       PostgresStatement erase(session, "DELETE FROM jobs WHERE ordinal = ?");  // labels and events go with it
-      if (absl::Status erased = erase.bind(row->ordinal).run(); !erased.ok()) return erased;
-      return notify(session, {own_, News::Kind::kRemoved, job_id});
+      return erase.bind(row->ordinal).run();
     });
-    if (status.ok() && listener_ != nullptr) listener_->removed(job_id);
+    if (!status.ok()) return status;
+    if (listener_ != nullptr) listener_->removed(job_id);
+    herald_.tell({own_, News::Kind::kRemoved, job_id});
     return status;
   }
 
@@ -113,17 +117,9 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
 
   void committed(const JobRecord& record, bool state_changed) {
     if (listener_ != nullptr) listener_->committed(record, state_changed);
-  }
-
-  static absl::Status notify(PostgresSession& session, const News& news) {
-    PostgresStatement tell(session, "SELECT pg_notify(?, ?)");
-    return tell.bind_text(kNewsChannel).bind_text(encode(news)).run();
-  }
-
-  absl::Status tell_others(PostgresSession& session, const JobRecord& record) const {
+    if (!state_changed) return;
     const bool queued = record.job.state() == v1::JOB_STATE_QUEUED;
-    return notify(session,
-                  {own_, queued ? News::Kind::kQueued : News::Kind::kOtherState, record.job.job_id()});
+    herald_.tell({own_, queued ? News::Kind::kQueued : News::Kind::kOtherState, record.job.job_id()});
   }
 
   absl::Status lease_within(PostgresSession& session, Time now, const OrderTenants& order,
@@ -138,9 +134,7 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
       return next_token.status().ok() ? absl::InternalError("store: no fencing token") : next_token.status();
     Change change = decide((*row)->record, next_token.integer(0));
     leased = std::move(change.record);
-    absl::Status status = write_change(session, (*row)->ordinal, *leased, std::move(change.events));
-    if (status.ok()) status = tell_others(session, *leased);
-    return status;
+    return write_change(session, (*row)->ordinal, *leased, std::move(change.events));
   }
 
   static absl::StatusOr<bool> any_queued(PostgresSession& session, const std::vector<std::string>& tenants,
@@ -159,6 +153,7 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
   PostgresPool pool_;
   CommitListener* const listener_;
   const std::string own_;
+  PostgresHerald herald_;
   std::optional<PostgresNews> news_;  // last: it stops before what it uses goes
 };
 

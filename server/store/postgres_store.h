@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The store that several servers share: PostgreSQL 13 or newer. A job's row is locked while a decision is
 // taken on it; a lease skips the rows that others hold. Changes of state, and they alone, are told to the
-// other servers by NOTIFY: its lock is one for the whole database, progress would queue up behind it.
+// other servers by NOTIFY, after the commit (postgres_herald.h).
 //
 // The queue's limit is looked at when a job is made, without a lock: as many jobs as are made in the same
 // instant may exceed it.
