@@ -56,17 +56,17 @@ void ProgressDisplay::show(const v1::JobEvent& event) {
     bar_shown_ = true;
     return;
   }
-  const std::string stage = progress.printer_id() + "/" + progress.stage();
+  Told& told = told_[progress.printer_id()];
   const auto now = clock_.now();
-  if (stage == last_stage_ && now - last_line_ < kLinePeriod) return;
-  last_stage_ = stage;
-  last_line_ = now;
+  if (progress.stage() == told.stage && now - told.at < kLinePeriod) return;
+  told.stage = progress.stage();
+  told.at = now;
   // The estimated rest alone is no news: a log shall not repeat itself while a stage has nothing to tell.
-  v1::JobProgress told = progress;
-  told.clear_seconds_left();
-  const std::string text = progress_text(told);
-  if (text == last_told_) return;
-  last_told_ = text;
+  v1::JobProgress known = progress;
+  known.clear_seconds_left();
+  const std::string text = progress_text(known);
+  if (text == told.text) return;
+  told.text = text;
   line(progress_text(progress));
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // A job's progress on stderr: a bar that stays in one line on a terminal; elsewhere a line when the stage
-// changes and every two seconds. States and printers' ends are always told. May be used from several threads.
+// changes and every two seconds, for each printer. States and printers' ends are always told. May be used
+// from several threads.
 #pragma once
 
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <mutex>
 #include <string>
 
@@ -39,9 +41,12 @@ class ProgressDisplay {
   std::mutex mutex_;
   bool paused_ = false;
   bool bar_shown_ = false;
-  std::string last_stage_;
-  std::string last_told_;
-  std::chrono::steady_clock::time_point last_line_{};
+  // Printers of one job run side by side: what was told of each.
+  struct Told {
+    std::string stage, text;
+    std::chrono::steady_clock::time_point at{};
+  };
+  std::map<std::string, Told> told_;
 };
 
 }  // namespace skinframe::client

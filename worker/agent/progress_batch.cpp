@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/agent/progress_batch.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace skinframe::agent {
 
 void ProgressBatch::add(v1::JobProgress progress) {
   last_ = progress;
-  const bool newer_tick = !progress_.empty() && progress_.back().printer_id() == progress.printer_id() &&
-                          progress_.back().stage() == progress.stage() &&
-                          progress_.back().iteration() == progress.iteration();
-  if (newer_tick) {
-    progress_.back() = std::move(progress);
+  // The newest of this printer: others may run beside it.
+  const auto same = std::find_if(progress_.rbegin(), progress_.rend(), [&](const v1::JobProgress& told) {
+    return told.printer_id() == progress.printer_id();
+  });
+  if (same != progress_.rend() && same->stage() == progress.stage() &&
+      same->iteration() == progress.iteration()) {
+    *same = std::move(progress);
   } else {
     progress_.push_back(std::move(progress));
     trim();

@@ -34,6 +34,8 @@ double share_behind(Stage stage) {
   return 0.0;
 }
 
+constexpr double kEnoughToEstimate = 0.1;  // of a printer's time: before that it would be a guess
+
 template <class T>
 void put(json& object, const char* key, const std::optional<T>& value) {
   if (value) object[key] = *value;
@@ -79,24 +81,26 @@ EventStream::~EventStream() {
 
 void EventStream::progress(const PipelineProgress& event) {
   const std::scoped_lock lock(mutex_);
-  const bool new_stage =
-      !last_ || last_->progress.stage != event.progress.stage || last_->printer != event.printer;
-  const bool due = std::chrono::duration<double>(Clock::now() - last_written_).count() >= kTickSeconds;
+  const auto now = Clock::now();
+  const auto [entry, first] = told_.try_emplace(event.printer, Told{event, now, now});
+  Told& told = entry->second;
+  const bool new_stage = first || told.last.progress.stage != event.progress.stage;
+  const bool due = std::chrono::duration<double>(now - told.written).count() >= kTickSeconds;
+  told.last = event;
   last_ = event;
   if (!new_stage && !due) return;
-  const double behind = share_behind(event.progress.stage);
   std::optional<double> seconds_left;
-  if (time_left_ == TimeLeft::kEstimated && behind > 0.1) {
-    const double elapsed = std::chrono::duration<double>(Clock::now() - started_).count();
-    seconds_left = elapsed * (1 - behind) / behind;
-  }
+  const double before = share_behind(Stage::kSkin);  // where a printer's own stages begin
+  const double behind = (share_behind(event.progress.stage) - before) / (1 - before);
+  if (time_left_ == TimeLeft::kEstimated && !event.printer.empty() && behind > kEnoughToEstimate)
+    seconds_left = std::chrono::duration<double>(now - told.started).count() * (1 - behind) / behind;
+  told.written = now;
   write_line(progress_json(event, seconds_left));
 }
 
 void EventStream::printer_ended(const PrinterOutcome& outcome) {
   const std::scoped_lock lock(mutex_);
   write_line({{"printer", outcome_json(outcome)}});
-  started_ = Clock::now();
 }
 
 void EventStream::write_line(const json& line) {

@@ -7,9 +7,11 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
+#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "worker/pipeline/pipeline.h"
@@ -42,9 +44,14 @@ class EventStream {
   const TimeLeft time_left_;
   std::mutex mutex_;
   std::condition_variable_any wake_;
-  std::optional<PipelineProgress> last_;
+  // Printers may run side by side: what was told of each, and of the stages they share under "".
+  struct Told {
+    PipelineProgress last;
+    Clock::time_point written, started;
+  };
+  std::map<std::string, Told> told_;
+  std::optional<PipelineProgress> last_;  // of any
   Clock::time_point last_written_ = Clock::now();
-  Clock::time_point started_ = Clock::now();
   std::jthread beat_;
 };
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The whole way of a job, the paper's overview figure (Wang et al. 2013, figure 2) as one function:
 //
-//   read -> place -> repair -> for each printer: skin -> sample -> pose -> optimise -> merge -> write
+//   read -> place -> repair -> for each printer, side by side where the job has threads:
+//     skin -> sample -> pose -> optimise -> merge -> write
 //
 // Guarantees:
 //  1. out_dir holds report.json and a folder for each printer with a result, and nothing else.

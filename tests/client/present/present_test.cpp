@@ -109,6 +109,20 @@ TEST_F(Display, WithoutATerminalALineComesWhenTheStageChangesAndEveryTwoSeconds)
   EXPECT_THAT(text, HasSubstr("topology  iteration 1"));
 }
 
+TEST_F(Display, APrinterBesideAnotherDoesNotHurryItsLines) {
+  ProgressDisplay display(file_, false, clock_);
+  for (const int iteration : {1, 2, 3})
+    for (const char* printer : {"one", "two"}) {
+      auto event = size_event(iteration);
+      event.mutable_progress()->set_printer_id(printer);
+      display.show(event);
+    }
+  const std::string text = shown();
+  EXPECT_THAT(text, HasSubstr("one  size  iteration 1"));
+  EXPECT_THAT(text, HasSubstr("two  size  iteration 1"));
+  EXPECT_THAT(text, Not(HasSubstr("iteration 2")));
+}
+
 TEST_F(Display, OnATerminalTheBarStaysInItsLineAndGoesAtTheEnd) {
   ProgressDisplay display(file_, true, clock_);
   display.show(size_event(1));

@@ -107,6 +107,23 @@ TEST(ProgressBatch, TicksOfOneIterationBecomeTheNewest) {
   EXPECT_EQ(request.progress(1).total_volume_mm3(), 8);
 }
 
+TEST(ProgressBatch, ATickBecomesTheNewestOfItsPrinterAlsoBetweenThoseOfAnother) {
+  ProgressBatch batch;
+  for (const double volume : {3.0, 2.0, 1.0})
+    for (const char* printer : {"one", "two"}) {
+      v1::JobProgress progress;
+      progress.set_printer_id(printer);
+      progress.set_stage("size");
+      progress.set_iteration(4);
+      progress.set_frame_volume_mm3(volume);
+      batch.add(progress);
+    }
+  v1::HeartbeatRequest request;
+  batch.take(request);
+  ASSERT_EQ(request.progress_size(), 2);
+  for (const v1::JobProgress& progress : request.progress()) EXPECT_EQ(progress.frame_volume_mm3(), 1.0);
+}
+
 TEST(ProgressBatch, WithNothingNewTheLastKnownIsToldAgain) {
   ProgressBatch batch;
   v1::HeartbeatRequest before;

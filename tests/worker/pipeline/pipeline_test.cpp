@@ -2,8 +2,10 @@
 // Whole jobs on sample bodies.
 #include "worker/pipeline/pipeline.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -23,6 +25,11 @@ namespace fs = std::filesystem;
 json read_json(const fs::path& path) {
   std::ifstream in(path);
   return json::parse(in);
+}
+
+std::string read_bytes(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return std::string((std::istreambuf_iterator<char>(in)), {});
 }
 
 TEST(Pipeline, ARefusedPrinterDoesNotSinkTheOthers) {
@@ -108,11 +115,48 @@ TEST(Pipeline, SameInputAndSeedGiveTheSameFrame) {
     context.threads = i + 1;
     const fs::path out = folder.path() / std::to_string(i);
     ASSERT_TRUE(run_pipeline(request, out, PipelineObserver{}, context).ok());
-    std::ifstream in(out / "sinterstation-hiq" / "frame.json");
-    frames[i].assign(std::istreambuf_iterator<char>(in), {});
+    frames[i] = read_bytes(out / "sinterstation-hiq" / "frame.json");
   }
   EXPECT_FALSE(frames[0].empty());
   EXPECT_TRUE(frames[0] == frames[1]);
+}
+
+TEST(Pipeline, PrintersSideBySideGiveWhatTheyGiveOneAfterAnother) {
+  test::TemporaryFolder folder;
+  JobRequest request = test::sample_job("egg", 40, 60, folder.path());
+  request.printers.push_back(test::sinterstation_pa());
+  request.printers.back().printer.id = "finer";
+  request.printers.back().printer.min_radius_mm = 0.4;
+  request.printers.push_back(test::sinterstation_pa());
+  request.printers.back().printer.id = "matchbox";
+  request.printers.back().printer.tray_mm = {30, 20, 10};
+  const std::vector<std::string> ids = {"sinterstation-hiq", "finer", "matchbox"};
+  std::vector<std::string> ended;
+  std::atomic<int> inside = 0;  // of the observer
+  PipelineObserver observer;
+  observer.progress = [&](const PipelineProgress&) {
+    EXPECT_EQ(++inside, 1) << "called one at a time";
+    --inside;
+  };
+  observer.printer_ended = [&](const PrinterOutcome& outcome) { ended.push_back(outcome.printer); };
+  json reports[2];
+  for (int i = 0; i < 2; ++i) {
+    RunContext context;
+    context.threads = 1 + 2 * i;
+    const fs::path out = folder.path() / std::to_string(i);
+    ended.clear();
+    auto outcomes = run_pipeline(request, out, observer, context);
+    ASSERT_TRUE(outcomes.ok()) << outcomes.error().message;
+    for (std::size_t k = 0; k < ids.size(); ++k) EXPECT_EQ((*outcomes)[k].printer, ids[k]);
+    EXPECT_THAT(ended, testing::UnorderedElementsAreArray(ids));
+    reports[i] = read_json(out / "report.json");
+    for (json& printer : reports[i]["printers"]) printer.erase("seconds");
+  }
+  EXPECT_EQ(reports[0], reports[1]);
+  for (const char* file : {"skin-frame.stl", "frame.json"})
+    for (const char* id : {"sinterstation-hiq", "finer"})
+      EXPECT_TRUE(read_bytes(folder.path() / "0" / id / file) == read_bytes(folder.path() / "1" / id / file))
+          << id << "/" << file;
 }
 
 TEST(Pipeline, ProgressNamesEveryStageInOrder) {
@@ -134,6 +178,8 @@ TEST(Pipeline, ProgressNamesEveryStageInOrder) {
 TEST(Pipeline, CancellationEndsTheJobWithoutAResult) {
   test::TemporaryFolder folder;
   JobRequest request = test::sample_job("egg", 60, 60, folder.path());
+  request.printers.push_back(test::sinterstation_pa());
+  request.printers.back().printer.id = "another";
   std::stop_source stop;
   PipelineObserver observer;
   observer.progress = [&](const PipelineProgress& p) {
@@ -141,6 +187,7 @@ TEST(Pipeline, CancellationEndsTheJobWithoutAResult) {
   };
   RunContext context;
   context.stop = stop.get_token();
+  context.threads = 2;
   auto outcomes = run_pipeline(request, folder.path() / "out", observer, context);
   ASSERT_FALSE(outcomes.ok());
   EXPECT_EQ(outcomes.error().kind, ErrorKind::kCancelled);
