@@ -67,6 +67,8 @@ TEST_F(Partition, ALateResultIsRefusedWhileItsRescuerRunsAndAfterItsEnd) {
     EXPECT_EQ(witness_->workers(0).Complete(&complete_context, complete, &completed).error_code(),
               grpc::StatusCode::ABORTED);
   };
+  // Queued again, not still: the watch may be behind the lease.
+  ASSERT_TRUE(witness_->wait(seconds(30), [&] { return witness_->attempt_of(job) == 1; }));
   ASSERT_TRUE(witness_->wait(seconds(30), [&] { return witness_->state_of(job) == v1::JOB_STATE_QUEUED; }));
   late_calls();
   farm_->add_worker();
