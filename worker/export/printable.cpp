@@ -31,7 +31,7 @@ constexpr double kMaxSurfaceSquares = 3e6;  // as in build_skin.cpp: some 600 MB
 constexpr double kFlatBandVoxels = 8.0;     // of the band beside the skin's own depth
 constexpr double kMaxBandVoxels = 3e6 * 24;
 constexpr double kVoxelInRadii = 0.6;      // of the thinnest strut
-constexpr double kThinningInVoxels = 0.2;  // what no corner of the level set's surface is further off
+constexpr double kThinningInVoxels = 0.1;  // root mean square over planes
 
 Result<double> choose_voxel(const ExportOptions& options, const Skin& skin,
                             const std::vector<double>& radii_mm, double area_mm2) {
@@ -136,7 +136,10 @@ Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Fr
   if (context.cancelled()) return cancelled_error();
   steps.done("surface");
   if (manifold && options.max_triangles > 0) {
-    thin_out(cavity, {.triangles = options.max_triangles, .max_deviation_mm = kThinningInVoxels * *voxel},
+    thin_out(cavity,
+             {.triangles = options.max_triangles,
+              .max_deviation_mm = kThinningInVoxels * *voxel,
+              .is_bounded = false},
              context);
   }
   steps.done("thin_out");

@@ -27,9 +27,10 @@
 namespace skinframe {
 
 struct ExportOptions {
-  std::optional<double> voxel_mm;       // default 0.6 of the smallest radius, coarser on large bodies
-  std::size_t max_triangles = 800'000;  // of the cavity: thinned to this within 0.2 voxel; 0 = not thinned
-  double smallest_pocket_mm3 = 1.0;     // sealed pockets below are filled, >= 0
+  std::optional<double> voxel_mm;  // default 0.6 of the smallest radius, coarser on large bodies
+  std::size_t max_triangles =
+      800'000;                       // of the cavity: thinned to this within 0.1 voxel (rms); 0 = not thinned
+  double smallest_pocket_mm3 = 1.0;  // sealed pockets below are filled, >= 0
   Status validate() const;
 };
 

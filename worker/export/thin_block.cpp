@@ -67,7 +67,7 @@ class Block {
     number_vertices();
     link_triangles();
     for (int t = 0; t < own_; ++t) add_planes(t);
-    fill_grid();
+    if (limits_.is_bounded) fill_grid();
     for (int t = 0; t < own_; ++t) {
       for (int k = 0; k < 3; ++k) {
         const int u = triangles_[t][k], v = triangles_[t][(k + 1) % 3];
@@ -95,13 +95,19 @@ class Block {
     }
     for (int t = 0; t < own_; ++t) {
       const int global = block_.own[t];
-      state_.gone[global] = !alive_[t];
+      state_.gone[global] = !slots_[t].alive;
       for (int k = 0; k < 3; ++k) mesh.triangles[global][k] = numbers_[triangles_[t][k]];
       for (int p = first_point_[t]; p >= 0; p = next_point_[p]) state_.points[points_[p]].triangle = global;
     }
   }
 
  private:
+  // All that a search meets of a triangle, in one line of the cache.
+  struct alignas(64) Slot {
+    Eigen::Matrix3f shape;  // its corners: all are exact floats
+    std::uint32_t seen = 0;
+    bool alive = true;
+  };
   // A triangle as the collapse being tried would leave it.
   struct Changed {
     int triangle;
@@ -138,12 +144,11 @@ class Block {
     }
     if (state_.exact_stay)
       for (std::size_t v = 0; v < numbers_.size(); ++v) locked_[v] |= is_exact(static_cast<int>(v));
-    shapes_.resize(triangles_.size());
+    slots_.resize(triangles_.size());
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
       const auto& c = triangles_[t];
       keep_shape_of(static_cast<int>(t), {places_[c[0]], places_[c[1]], places_[c[2]]});
     }
-    alive_.assign(triangles_.size(), 1);
     dead_.assign(numbers_.size(), 0);
     stamps_.assign(numbers_.size(), 0);
     quadrics_.resize(numbers_.size());
@@ -170,11 +175,11 @@ class Block {
   }
 
   Corners corners_of(int t) const {
-    const Eigen::Matrix3f& shape = shapes_[t];
+    const Eigen::Matrix3f& shape = slots_[t].shape;
     return {shape.col(0).cast<double>(), shape.col(1).cast<double>(), shape.col(2).cast<double>()};
   }
   void keep_shape_of(int t, const Corners& p) {
-    for (int k = 0; k < 3; ++k) shapes_[t].col(k) = p[k].cast<float>();
+    for (int k = 0; k < 3; ++k) slots_[t].shape.col(k) = p[k].cast<float>();
   }
 
   void add_planes(int t) {
@@ -199,7 +204,6 @@ class Block {
     grid_.emplace(block_.box, kCellInEdges * sum / std::max(1, own_), triangles_.size());
     for (std::size_t t = 0; t < triangles_.size(); ++t)
       grid_->insert(static_cast<int>(t), box_of(corners_of(t)));
-    seen_.assign(triangles_.size(), 0);
   }
 
   static Eigen::AlignedBox3d box_of(const Corners& p) {
@@ -247,7 +251,7 @@ class Block {
     around.clear();
     int* link = &first_corner_[v];
     while (*link >= 0) {
-      if (alive_[*link / 3]) {
+      if (slots_[*link / 3].alive) {
         around.push_back(*link / 3);
         link = &next_corner_[*link];
       } else {
@@ -282,7 +286,8 @@ class Block {
         if (triangles_[t][k] == u || triangles_[t][k] == v) p[k] = best->first;
       new_.push_back(changed_to(t, p));
     }
-    if (!keeps_shape() || !keeps_points(u, best->first) || !keeps_clear(u, v)) return false;
+    if (!keeps_shape()) return false;
+    if (limits_.is_bounded && !(keeps_points(u, best->first) && keeps_clear(u, v))) return false;
     collapse(u, v, best->first);
     return true;
   }
@@ -381,12 +386,13 @@ class Block {
         if (!clear(new_[i], new_[j].triangle, new_[j].corners, u, v)) return false;
     }
     ++stamp_;
-    for (int t : star_) seen_[t] = stamp_;
+    for (int t : star_) slots_[t].seen = stamp_;
     bool good = true;
     grid_->near(box, [&](int other) {
-      if (!alive_[other]) return false;
-      if (!good || seen_[other] == stamp_) return true;
-      seen_[other] = stamp_;
+      Slot& slot = slots_[other];
+      if (!slot.alive) return false;
+      if (!good || slot.seen == stamp_) return true;
+      slot.seen = stamp_;
       const Corners there = corners_of(other);
       const Eigen::AlignedBox3d there_box = box_of(there);
       if (!box.intersects(there_box)) return true;
@@ -452,7 +458,7 @@ class Block {
       first_point_[t] = p;
     }
     for (int t : star_)
-      if (has(t, u) && has(t, v)) alive_[t] = 0;
+      if (has(t, u) && has(t, v)) slots_[t].alive = false;
     int* end = &first_corner_[u];
     while (*end >= 0) end = &next_corner_[*end];
     *end = first_corner_[v];
@@ -464,7 +470,7 @@ class Block {
     ++stamps_[u];
     quadrics_[u] += quadrics_[v];
     for (const Changed& changed : new_) {
-      grid_->insert(changed.triangle, changed.box);
+      if (grid_) grid_->insert(changed.triangle, changed.box);
       keep_shape_of(changed.triangle, changed.corners);
     }
     gather(u, around_u_);
@@ -480,8 +486,8 @@ class Block {
   std::vector<int> numbers_;  // in the mesh, of each vertex
   std::vector<Eigen::Vector3d> places_;
   std::vector<std::array<int, 3>> triangles_;
-  std::vector<Eigen::Matrix3f> shapes_;  // their corners, where they are found at once; all are exact floats
-  std::vector<char> alive_, dead_, locked_;
+  std::vector<char> dead_, locked_;
+  std::vector<Slot> slots_;  // one a triangle
   std::vector<std::uint32_t> stamps_;
   std::vector<Quadric> quadrics_;
   std::vector<int> first_corner_, next_corner_;
@@ -493,7 +499,6 @@ class Block {
   std::vector<Changed> new_;
   std::vector<Eigen::Vector3d> star_places_, star_normals_;
   std::vector<std::pair<int, int>> moved_points_;
-  std::vector<std::uint32_t> seen_;
   std::uint32_t stamp_ = 0;
 };
 

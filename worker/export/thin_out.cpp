@@ -148,7 +148,7 @@ Thinned thin_out(TriangleMesh& mesh, const ThinningOptions& options, const RunCo
   state.exact_vertices = options.exact_vertices;
   state.exact_stay = options.exact_stay;
   state.original = options.original;
-  state.points = points_of(mesh, kLargeInDeviations * options.max_deviation_mm);
+  if (options.is_bounded) state.points = points_of(mesh, kLargeInDeviations * options.max_deviation_mm);
   for (int pass = 0; pass < static_cast<int>(kPasses.size()); ++pass) {
     const std::size_t left = mesh.triangles.size();
     if (left <= options.triangles || context.cancelled()) break;
@@ -158,8 +158,9 @@ Thinned thin_out(TriangleMesh& mesh, const ThinningOptions& options, const RunCo
     link_points(state);
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
       const auto least = static_cast<std::size_t>(share * static_cast<double>(blocks[b].own.size()));
-      thin_block(state, blocks[b],
-                 {kPasses[pass] * options.max_deviation_mm, options.max_deviation_mm, least});
+      thin_block(
+          state, blocks[b],
+          {kPasses[pass] * options.max_deviation_mm, options.max_deviation_mm, options.is_bounded, least});
     });
     drop_gone(state);
   }

@@ -24,8 +24,11 @@ namespace skinframe {
 struct ThinningOptions {
   std::size_t triangles = 0;      // wanted; more stay where the deviation asks for them
   double max_deviation_mm = 0.0;  // > 0
-  int exact_vertices = 0;         // the first so many vertices never move, they only go,
-  bool exact_stay = false;        // and not even that
+  // False: only the root of the quadric error stays below the deviation. Neither points are followed then nor
+  // is it asked whether triangles meet: several times as fast, for small steps.
+  bool is_bounded = true;
+  int exact_vertices = 0;   // the first so many vertices never move, they only go,
+  bool exact_stay = false;  // and not even that
   // The mesh as it was. With it new triangles are held to it exactly wherever the points leave doubt; the
   // caller measures what came of it.
   const TriangleTree* original = nullptr;
@@ -34,6 +37,7 @@ struct ThinningOptions {
 struct Thinned {
   // Furthest that a corner of the mesh as it was (or the middle of one of its large triangles) is from the
   // triangles that took its place: at most max_deviation_mm. The other direction is not measured here.
+  // 0 where it was not bounded.
   double deviation_mm = 0.0;
   int exact_vertices = 0;  // left of those, still the first
 };
