@@ -9,6 +9,7 @@
 
 #include "server/api/answer.h"
 #include "server/api/caller.h"
+#include "server/api/spec_digest.h"
 #include "server/api/spec_validation.h"
 #include "server/api/watch_call.h"
 #include "server/jobs/decisions.h"

@@ -2,16 +2,12 @@
 #include "server/api/spec_validation.h"
 
 #include <fmt/format.h>
-#include <google/protobuf/io/coded_stream.h>
-#include <google/protobuf/io/zero_copy_stream_impl_lite.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 
 #include "server/artifacts/artifact_store.h"
-#include "server/jobs/job_id.h"
-#include "skinframe/v1/worker.pb.h"
 
 namespace skinframe::server {
 namespace {
@@ -231,18 +227,6 @@ absl::Status check_schedule(const v1::JobSpec& spec) {
   return absl::OkStatus();
 }
 
-// Maps in the order of their keys.
-std::string canonical_bytes(const google::protobuf::Message& message) {
-  std::string bytes;
-  {
-    google::protobuf::io::StringOutputStream stream(&bytes);
-    google::protobuf::io::CodedOutputStream coded(&stream);
-    coded.SetSerializationDeterministic(true);
-    message.SerializeToCodedStream(&coded);
-  }
-  return bytes;
-}
-
 }  // namespace
 
 absl::Status validate_spec(const v1::JobSpec& spec, const Catalog& catalog) {
@@ -291,23 +275,6 @@ std::vector<std::string> checks_that_hold(const v1::JobSpec& spec) {
 absl::Status validate_request_id(std::string_view request_id) {
   if (request_id.size() <= 64 && made_of(request_id, "._-", true)) return absl::OkStatus();
   return invalid("request_id must be 1 .. 64 of [A-Za-z0-9._-], or empty");
-}
-
-std::string digest_of(const v1::JobSpec& spec) { return sha256_hex(canonical_bytes(spec)); }
-
-std::string reuse_key_of(const JobRecord& record) {
-  v1::Assignment asked;
-  *asked.mutable_spec() = record.job.spec();
-  asked.mutable_spec()->clear_mesh_name();
-  asked.mutable_spec()->clear_labels();
-  asked.mutable_spec()->clear_priority();
-  asked.mutable_spec()->clear_deadline();
-  // An absent material is the printer's default: what counts is the profile that was chosen.
-  for (auto& printer : *asked.mutable_spec()->mutable_printers()) printer.clear_material_id();
-  for (const auto& printer : record.printers) *asked.add_printers() = printer;
-  for (const auto& material : record.materials) *asked.add_materials() = material;
-  for (const auto& file : record.warm_start_files) *asked.add_warm_start_files() = file;
-  return sha256_hex(std::string(SKINFRAME_VERSION) + "\n" + canonical_bytes(asked));
 }
 
 }  // namespace skinframe::server

@@ -9,7 +9,6 @@
 
 #include "absl/status/status.h"
 #include "server/catalog/catalog.h"
-#include "server/jobs/job_record.h"
 #include "skinframe/v1/job.pb.h"
 
 namespace skinframe::server {
@@ -27,12 +26,5 @@ std::vector<std::string> checks_that_hold(const v1::JobSpec& spec);
 
 // 1 .. 64 of [A-Za-z0-9._-], or empty.
 absl::Status validate_request_id(std::string_view request_id);
-
-// SHA-256 of the spec's canonical bytes: maps in the order of their keys.
-std::string digest_of(const v1::JobSpec& spec);
-
-// The same for two jobs that must come to the same result: SHA-256 of the spec without name, labels, priority
-// and deadline, of the profiles and the files to start from, and of this program's version.
-std::string reuse_key_of(const JobRecord& record);
 
 }  // namespace skinframe::server

@@ -9,6 +9,8 @@
 #include <functional>
 #include <limits>
 
+#include "server/api/spec_digest.h"
+
 namespace skinframe::server {
 namespace {
 
