@@ -113,15 +113,8 @@ class Block {
     int triangle;
     Corners corners;
     Eigen::AlignedBox3d box;
-    Eigen::Vector3d normal;                  // not of unit length
-    std::array<Eigen::Vector3d, 3> outward;  // of each side, in the plane, of unit length
+    Eigen::Vector3d normal;  // not of unit length
   };
-  static Changed changed_to(int t, const Corners& p) {
-    Changed changed{t, p, box_of(p), normal_of(p), {}};
-    for (int k = 0; k < 3; ++k)
-      changed.outward[k] = (p[(k + 1) % 3] - p[k]).cross(changed.normal).stableNormalized();
-    return changed;
-  }
 
   void number_vertices() {
     const auto& all = state_.mesh->triangles;
@@ -284,7 +277,7 @@ class Block {
       Corners p = corners_of(t);
       for (int k = 0; k < 3; ++k)
         if (triangles_[t][k] == u || triangles_[t][k] == v) p[k] = best->first;
-      new_.push_back(changed_to(t, p));
+      new_.push_back({t, p, box_of(p), normal_of(p)});
     }
     if (!keeps_shape()) return false;
     if (limits_.is_bounded && !(keeps_points(u, best->first) && keeps_clear(u, v))) return false;
@@ -375,9 +368,13 @@ class Block {
     // A fan about one vertex that faces one way everywhere does not fold.
     Eigen::Vector3d facing = Eigen::Vector3d::Zero();
     Eigen::AlignedBox3d box;
+    outward_.clear();
     for (const Changed& changed : new_) {
       facing += changed.normal;
       box.extend(changed.box);
+      const Corners& p = changed.corners;
+      for (int k = 0; k < 3; ++k)
+        outward_.push_back((p[(k + 1) % 3] - p[k]).cross(changed.normal).stableNormalized());
     }
     const bool is_fan = std::all_of(new_.begin(), new_.end(),
                                     [&](const Changed& changed) { return changed.normal.dot(facing) > 0.0; });
@@ -433,7 +430,8 @@ class Block {
 
   // The quick answer: q but for its corner j, which is the corner i of the other, lies on one side of the
   // other's plane, or beyond one of its sides (that end in the corner).
-  static bool is_beyond(const Changed& changed, const Corners& q, int i, int j) {
+  bool is_beyond(const Changed& changed, const Corners& q, int i, int j) const {
+    const Eigen::Vector3d* outward = &outward_[3 * (&changed - new_.data())];
     const double margin = kLeastGapMm * changed.normal.norm();
     double low = std::numeric_limits<double>::infinity(), high = -low;
     std::array<double, 3> beyond{low, low, low};
@@ -442,8 +440,7 @@ class Block {
       const double height = changed.normal.dot(q[l] - changed.corners[0]);
       low = std::min(low, height);
       high = std::max(high, height);
-      for (int k = 0; k < 3; ++k)
-        beyond[k] = std::min(beyond[k], changed.outward[k].dot(q[l] - changed.corners[k]));
+      for (int k = 0; k < 3; ++k) beyond[k] = std::min(beyond[k], outward[k].dot(q[l] - changed.corners[k]));
     }
     if (low > margin || high < -margin) return true;
     for (int k = 0; k < 3; ++k)
@@ -497,6 +494,7 @@ class Block {
   // Of the collapse being tried.
   std::vector<int> around_u_, around_v_, near_u_, near_v_, star_;
   std::vector<Changed> new_;
+  std::vector<Eigen::Vector3d> outward_;  // three for each: of each side, in the plane, of unit length
   std::vector<Eigen::Vector3d> star_places_, star_normals_;
   std::vector<std::pair<int, int>> moved_points_;
   std::uint32_t stamp_ = 0;

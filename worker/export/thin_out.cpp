@@ -17,6 +17,7 @@ namespace {
 
 // The quadric error allowed in each pass, in deviations: cheap collapses come first everywhere.
 constexpr std::array kPasses = {0.15, 0.4, 1.0, 1.0};
+constexpr int kFirstUnbounded = 2;  // its steps are small, their order matters less
 constexpr double kTrianglesABlock = 6000.0;
 constexpr double kBlocksInSurface = 2.0;  // of n^3 boxes about a body, some 2 n^2 hold surface
 constexpr int kMostBlocksAcross = 24;
@@ -149,7 +150,7 @@ Thinned thin_out(TriangleMesh& mesh, const ThinningOptions& options, const RunCo
   state.exact_stay = options.exact_stay;
   state.original = options.original;
   if (options.is_bounded) state.points = points_of(mesh, kLargeInDeviations * options.max_deviation_mm);
-  for (int pass = 0; pass < static_cast<int>(kPasses.size()); ++pass) {
+  for (int pass = options.is_bounded ? 0 : kFirstUnbounded; pass < static_cast<int>(kPasses.size()); ++pass) {
     const std::size_t left = mesh.triangles.size();
     if (left <= options.triangles || context.cancelled()) break;
     const double share = static_cast<double>(options.triangles) / static_cast<double>(left);
