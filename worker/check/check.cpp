@@ -43,6 +43,10 @@ Verdict judge(const ExportedPrinter& result) {
   }
   claim_frame(result, &outer, &verdict);
   claim_printed_struts(result, cavity, outer, &verdict);
+  if (result.supports) {
+    claim_supports(result, outer, &verdict);
+    claim_overhang(result, outer_mesh, outer, &verdict);
+  }
   claim_mechanics(result, &verdict);
   claim_bounds(result, &verdict);
   claim_balance(result, outer_mesh, &verdict);

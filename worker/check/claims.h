@@ -56,6 +56,21 @@ void claim_frame(const ExportedPrinter& result, const Surface* outer, Verdict* v
 void claim_printed_struts(const ExportedPrinter& result, const TriangleMesh& cavity, const Surface& outer,
                           Verdict* verdict);
 
+// Of extrusion printers: every strut prints, divided at its inserted nodes; every node has a way down to the
+// base plane, by struts that print or by the skin; no support is without need; supports stay on their side of
+// the skin; the figures are those of the exported meshes, which are closed; the deformation of the print is
+// as reported.
+void claim_supports(const ExportedPrinter& result, const Surface& outer, Verdict* verdict);
+// p(theta) of the exported points: linear between them, the shorter one beside a point without limit,
+// constant before the first.
+double printable_mm(const std::vector<std::pair<double, double>>& curve, double degrees);
+// No more skin hangs too far from what holds it than is reported.
+void claim_overhang(const ExportedPrinter& result, const TriangleMesh& outer_mesh, const Surface& outer,
+                    Verdict* verdict);
+
+// Under gravity alone, one a node; empty where the stiffness is singular.
+std::vector<Eigen::Vector3d> own_weight_displacements_mm(const ExportedFrame& frame);
+
 // Of a frame problem: radii within each strut's own bounds (9, 10), slenderness (4, 5), counts and volumes
 // (12), balance (8).
 void claim_solution(const ExportedPrinter& solution, Verdict* verdict);

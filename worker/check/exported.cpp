@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "worker/check/exported_supports.h"
 #include "worker/mesh/read_mesh.h"
 
 namespace skinframe::check {
@@ -251,6 +252,13 @@ Status read_listed(const std::filesystem::path& path, const json& item, Exported
     if (!initial) return initial.error();
     if (!printer->lower_bound_mm3 && !printer->relaxed_lower_bound_mm3) return ok_status();
     read_given(*initial, *initial, printer);
+  } else if (name.starts_with("support-struts") && printer->supports) {
+    auto file = read_mesh(path, ReadLimits{}, context);
+    if (!file) return file.error();
+    ExportedSupports& supports = *printer->supports;
+    (name == "support-struts-internal.stl"   ? supports.internal_mesh
+     : name == "support-struts-external.stl" ? supports.external_mesh
+                                             : supports.all_mesh) = weld_equal(file->mesh);
   }
   return ok_status();
 }
@@ -305,6 +313,9 @@ Result<Exported> read_exported(const std::filesystem::path& directory, RunContex
         if (!frame) return frame.error();
         printer.frame = parse_frame(*frame);
         printer.certificate = parse_proof(*frame, "certificate", printer.frame);
+        if (item.contains("supports") && frame->contains("supports"))
+          printer.supports = parse_supports(frame->at("supports"), item.at("supports"),
+                                            printer.frame.nodes_mm.size(), printer.frame.struts.size());
       }
       if (!printer.infeasible()) {
         auto merged = read_mesh(folder / "skin-frame.stl", ReadLimits{}, context);

@@ -59,6 +59,32 @@ struct ExportedProof {
   std::vector<double> balance_multipliers;  // one a half plane, or empty
 };
 
+// What Algorithm 2 added, as frame.json and the report tell it. Nodes are counted behind those of the frame.
+struct ExportedSupportNode {
+  Eigen::Vector3d at_mm = Eigen::Vector3d::Zero();
+  std::string on;  // "strut", "roof", "support", "skin", "plate"
+  int strut = -1;  // of the frame, for "strut"
+};
+struct ExportedSupportStrut {
+  int upper = 0, lower = 0;
+  double radius_mm = 0;
+  bool external = false;
+};
+struct ExportedSupports {
+  std::vector<std::pair<double, double>>
+      printable_length;  // degrees from the vertical, mm; infinite: no limit
+  double self_supporting_angle_deg = 0, plate_z_mm = 0, plate_reach_mm = 0, skin_tie_radius_mm = 0;
+  std::vector<ExportedSupportNode> nodes;
+  std::vector<ExportedSupportStrut> struts;
+  // as reported
+  int internal = 0, external = 0, count = 0;
+  double length_mm = 0, volume_mm3 = 0, internal_volume_mm3 = 0, external_volume_mm3 = 0, weight_g = 0;
+  double worst_vertical_deformation_mm = 0;
+  std::optional<double> deformation_limit_mm;
+  double roof_beyond_mm2 = 0, underside_beyond_mm2 = 0, cavity_surface_mm2 = 0, beyond_share = 0;
+  TriangleMesh all_mesh, internal_mesh, external_mesh;  // empty where there is no such file
+};
+
 struct ExportedPrinter {
   std::string printer, material;
   std::string termination;  // "OPTIMAL", "INFEASIBLE", "SOLID", ...
@@ -87,6 +113,7 @@ struct ExportedPrinter {
   std::optional<TriangleMesh> merged;  // vertices welded where equal; absent where the result has no mesh
   std::optional<TriangleMesh> compact;
   std::optional<Package> package, beams;  // skin-frame.3mf, frame-beams.3mf
+  std::optional<ExportedSupports> supports;
   std::size_t compact_triangles = 0, compact_crossings = 0;
   double compact_volume_mm3 = 0, compact_deviation_mm = 0;
   bool optimised() const { return termination != "NOT_OPTIMIZED"; }

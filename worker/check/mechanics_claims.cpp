@@ -67,6 +67,42 @@ Eigen::VectorXd loads(const ExportedFrame& frame, const Assembled& assembled,
   return force;
 }
 
+// The stiffness with the supports held, factorised.
+struct Held {
+  std::vector<int> free_axis;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver;
+  bool definite = true;
+
+  Held(const ExportedFrame& frame, const Assembled& assembled) {
+    const int axes = 3 * static_cast<int>(frame.nodes_mm.size());
+    std::vector<int> place(axes, -1);
+    for (int i = 0; i < axes; ++i) {
+      if (frame.fixed[i / 3][i % 3]) continue;
+      place[i] = static_cast<int>(free_axis.size());
+      free_axis.push_back(i);
+    }
+    std::vector<Eigen::Triplet<double>> kept;
+    for (int c = 0; c < assembled.stiffness.outerSize(); ++c)
+      for (Eigen::SparseMatrix<double>::InnerIterator it(assembled.stiffness, c); it; ++it)
+        if (place[it.row()] >= 0 && place[it.col()] >= 0)
+          kept.emplace_back(place[it.row()], place[it.col()], it.value());
+    if (free_axis.empty()) return;
+    Eigen::SparseMatrix<double> reduced(free_axis.size(), free_axis.size());
+    reduced.setFromTriplets(kept.begin(), kept.end());
+    solver.compute(reduced);
+    definite = solver.info() == Eigen::Success &&
+               solver.vectorD().minCoeff() > (frame.axial ? kNoPivot * solver.vectorD().maxCoeff() : 0.0);
+  }
+
+  Eigen::VectorXd solve(const Eigen::VectorXd& force) const {
+    Eigen::VectorXd d = Eigen::VectorXd::Zero(force.size()), right(free_axis.size());
+    for (std::size_t k = 0; k < free_axis.size(); ++k) right[k] = force[free_axis[k]];
+    const Eigen::VectorXd solved = solver.solve(right);
+    for (std::size_t k = 0; k < free_axis.size(); ++k) d[free_axis[k]] = solved[k];
+    return d;
+  }
+};
+
 struct Ratios {
   double axial = 0, shear = 0;
 };
@@ -123,27 +159,24 @@ void claim_violation(const ExportedPrinter& result, bool stable, bool displaced,
 
 }  // namespace
 
+std::vector<Eigen::Vector3d> own_weight_displacements_mm(const ExportedFrame& frame) {
+  const Assembled assembled = assemble(frame);
+  const Held held(frame, assembled);
+  std::vector<Eigen::Vector3d> displacements;
+  if (!held.definite || held.free_axis.empty()) return displacements;
+  const std::vector<Eigen::Vector3d> no_force(frame.nodes_mm.size(), Eigen::Vector3d::Zero());
+  const Eigen::VectorXd d = held.solve(loads(frame, assembled, {"own weight", true, no_force, {}}));
+  for (std::size_t i = 0; i < frame.nodes_mm.size(); ++i)
+    displacements.push_back(d.segment<3>(3 * static_cast<Eigen::Index>(i)));
+  return displacements;
+}
+
 void claim_mechanics(const ExportedPrinter& result, Verdict* verdict) {
   const ExportedFrame& frame = result.frame;
   const int n = static_cast<int>(frame.nodes_mm.size());
   const Assembled assembled = assemble(frame);
-  std::vector<int> free_axis;
-  for (int i = 0; i < 3 * n; ++i)
-    if (!frame.fixed[i / 3][i % 3]) free_axis.push_back(i);
-  std::vector<int> place(3 * n, -1);
-  for (std::size_t k = 0; k < free_axis.size(); ++k) place[free_axis[k]] = static_cast<int>(k);
-  std::vector<Eigen::Triplet<double>> kept;
-  for (int c = 0; c < assembled.stiffness.outerSize(); ++c)
-    for (Eigen::SparseMatrix<double>::InnerIterator it(assembled.stiffness, c); it; ++it)
-      if (place[it.row()] >= 0 && place[it.col()] >= 0)
-        kept.emplace_back(place[it.row()], place[it.col()], it.value());
-  Eigen::SparseMatrix<double> reduced(free_axis.size(), free_axis.size());
-  reduced.setFromTriplets(kept.begin(), kept.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(reduced);
-  const bool definite =
-      free_axis.empty() ||
-      (solver.info() == Eigen::Success &&
-       solver.vectorD().minCoeff() > (frame.axial ? kNoPivot * solver.vectorD().maxCoeff() : 0.0));
+  const Held held(frame, assembled);
+  const bool definite = held.definite;
   const char* model = frame.axial ? "axial model" : "paper model";
 
   double worst_residual = 0, worst_displacement = 0;
@@ -156,18 +189,14 @@ void claim_mechanics(const ExportedPrinter& result, Verdict* verdict) {
     if (static_cast<int>(load_case.displacement_mm.size()) == n) {
       for (int i = 0; i < n; ++i) d.segment<3>(3 * i) = load_case.displacement_mm[i];
       const Eigen::VectorXd residual = assembled.stiffness * d - force;
-      for (const int i : free_axis)
+      for (const int i : held.free_axis)
         worst_residual = std::max(worst_residual,
                                   std::abs(residual[i]) / std::max(force.cwiseAbs().maxCoeff(), kTinyForce));
     } else {
       exported_all = false;
     }
-    if (definite && !free_axis.empty()) {
-      Eigen::VectorXd right(free_axis.size());
-      for (std::size_t k = 0; k < free_axis.size(); ++k) right[k] = force[free_axis[k]];
-      const Eigen::VectorXd solved = solver.solve(right);
-      d.setZero();
-      for (std::size_t k = 0; k < free_axis.size(); ++k) d[free_axis[k]] = solved[k];
+    if (definite && !held.free_axis.empty()) {
+      d = held.solve(force);
     } else if (!definite && !frame.axial) {
       continue;
     }  // else what was exported has to stand in: its residual is what shows it in equilibrium

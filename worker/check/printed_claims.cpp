@@ -15,12 +15,19 @@ void claim_printed_struts(const ExportedPrinter& result, const TriangleMesh& cav
   for (auto& t : outward.triangles) std::swap(t[1], t[2]);
   const Surface hollow(outward);
 
+  std::vector<Eigen::Vector3d> nodes = result.frame.nodes_mm;
+  std::vector<ExportedStrut> struts = result.frame.struts;
+  if (result.supports) {
+    for (const ExportedSupportNode& node : result.supports->nodes) nodes.push_back(node.at_mm);
+    for (const ExportedSupportStrut& s : result.supports->struts)
+      if (!s.external) struts.push_back({s.upper, s.lower, false, s.radius_mm, 0, 0});
+  }
+
   // A level set rounds off less than a voxel; the middle of a strut stays solid.
-  const ExportedFrame& frame = result.frame;
   std::size_t looked_at = 0, missing = 0;
   double worst = std::numeric_limits<double>::infinity();
-  for (const ExportedStrut& s : frame.struts) {
-    const Eigen::Vector3d &a = frame.nodes_mm[s.a], &b = frame.nodes_mm[s.b];
+  for (const ExportedStrut& s : struts) {
+    const Eigen::Vector3d &a = nodes[s.a], &b = nodes[s.b];
     bool judged = false, absent = false;
     for (const double t : {0.3, 0.5, 0.7}) {
       const Eigen::Vector3d p = a + t * (b - a);

@@ -46,6 +46,11 @@ double Surface::distance_mm(const Eigen::Vector3d& p) const {
   return std::sqrt(impl_->tree.squared_distance(Kernel::Point_3(p.x(), p.y(), p.z())));
 }
 
+Eigen::Vector3d Surface::nearest(const Eigen::Vector3d& p) const {
+  const Kernel::Point_3 q = impl_->tree.closest_point(Kernel::Point_3(p.x(), p.y(), p.z()));
+  return {q.x(), q.y(), q.z()};
+}
+
 double Surface::depth_mm(const Eigen::Vector3d& p) const {
   const double distance = distance_mm(p);
   return (*impl_->side)(Kernel::Point_3(p.x(), p.y(), p.z())) == CGAL::ON_UNBOUNDED_SIDE ? -distance

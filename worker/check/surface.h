@@ -18,6 +18,7 @@ class Surface {
 
   // Depth below the surface in mm: positive inside, negative outside.
   double depth_mm(const Eigen::Vector3d& point_mm) const;
+  Eigen::Vector3d nearest(const Eigen::Vector3d& point_mm) const;
   // Unsigned, and cheaper.
   double distance_mm(const Eigen::Vector3d& point_mm) const;
 

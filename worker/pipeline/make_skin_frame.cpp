@@ -12,6 +12,7 @@
 #include "worker/pipeline/pose_problem.h"
 #include "worker/pipeline/sample_by_stress.h"
 #include "worker/pipeline/solve_and_merge.h"
+#include "worker/pipeline/support_print.h"
 #include "worker/pipeline/write_json.h"
 #include "worker/pipeline/write_results.h"
 #include "worker/problem/problem_file.h"
@@ -23,7 +24,10 @@ namespace {
 std::vector<std::string> honest_warnings(const PrinterProfile& printer) {
   switch (printer.process) {
     case PrintProcess::kExtrusion:
-      return {"support struts are not generated yet: struts that overhang need the slicer's own supports"};
+      if (printer.printable_length) return {};
+      return {
+          "the printer's profile says nothing about the length that prints without support, so no support "
+          "struts are made: struts that overhang need the slicer's own supports"};
     case PrintProcess::kPowder:
     case PrintProcess::kResin:
       return {"drain holes are not cut yet: what fills the cavity while printing stays inside"};
@@ -109,7 +113,7 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
                     "balance is not enforced (see --up and --balance)",
                     -prepared.contact.margin_mm));
 
-  SolveSetting setting{prepared, *skin, job.options, balance, laps, std::nullopt};
+  SolveSetting setting{prepared, *skin, printer, job.options, balance, laps, std::nullopt};
   if (earlier && earlier->reduced && !job.options.no_optimize) {
     SampledFrame reduced = *sampled;
     reduced.frame = earlier->reduced->frame;
@@ -124,6 +128,12 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
   FrameProblem problem = posed->problem;
   auto merged = solve_and_merge(setting, &problem, &report, context);
   if (!merged) return merged.error();
+  if (report.supports && !report.supports->state.holds())
+    report.warnings.push_back(
+        fmt::format("while printing some strut or support gives way by {:.3g} mm along the vertical, more "
+                    "than the limit of "
+                    "{:.3g} mm",
+                    report.supports->state.worst_deformation_mm, *report.supports->state.limit_mm));
   if (report.warm_start && !report.warm_start->detail.empty())
     report.warnings.push_back(
         fmt::format("warm start from job {}: {}", report.warm_start->job_id, report.warm_start->detail));
@@ -133,6 +143,7 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
   const auto folder = out_dir / printer.id;
   auto frame_json = to_json(result.problem, result.radii_mm, result.displacements_mm);
   if (result.certificate) frame_json["certificate"] = certificate_json(*result.certificate);
+  if (report.supports) frame_json["supports"] = supports_json(*report.supports, printer, *skin);
   if (auto written = write_json(folder / "frame.json", frame_json); !written) return written.error();
   report.files.push_back("frame.json");
   const bool optimised = report.reason == Reason::kNone && !job.options.no_optimize;
@@ -144,6 +155,10 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
   const PrintableMesh& printable = *merged.value();
   if (auto written = write_printable(printable, prepared, request, folder, &report, context); !written)
     return written.error();
+  if (report.supports) {
+    if (auto written = write_supports(result.problem.frame, *skin, request, folder, &report); !written)
+      return written.error();
+  }
   laps.lap("write");
   return report;
 }

@@ -5,6 +5,7 @@
 
 #include "worker/frame/convex_region.h"
 #include "worker/mechanics/equilibrium.h"
+#include "worker/pipeline/support_print.h"
 
 namespace skinframe {
 namespace {
@@ -127,9 +128,17 @@ Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting
     fill_statistics(setting, report);
     if (report->reason != Reason::kNone) return std::optional<PrintableMesh>();
 
+    auto supports = plan_print(report->optimised->problem, report->optimised->radii_mm, setting.skin,
+                               setting.printer, context);
+    if (!supports) return supports.error();
+    report->supports = std::move(supports).value();
+    setting.laps.lap("support");
+
     context.report({.stage = Stage::kExport, .frame_volume_mm3 = report->statistics.frame_volume_mm3});
-    auto merged = merge_solid(setting.prepared.solid, setting.skin, report->optimised->problem.frame,
-                              report->optimised->radii_mm,
+    const MergedFrame printed =
+        with_internal_supports(report->optimised->problem.frame, report->optimised->radii_mm,
+                               report->supports ? &report->supports->plan : nullptr);
+    auto merged = merge_solid(setting.prepared.solid, setting.skin, printed.frame, printed.radii_mm,
                               ExportOptions{.voxel_mm = setting.options.voxel_mm}, context);
     if (!merged) return merged.error();
     setting.laps.lap("export");

@@ -26,14 +26,15 @@ struct ReducedStart {
 struct SolveSetting {
   const PreparedSolid& prepared;
   const Skin& skin;
+  const PrinterProfile& printer;
   const JobOptions& options;
   BalanceState balance;
   Laps& laps;
   std::optional<ReducedStart> start;
 };
 
-// Fills the report's optimised frame, statistics, termination and reason. No mesh when the job is infeasible.
-// `problem` is left as it was solved last: its balance half planes drawn in as the print asked for.
+// Fills the report's optimised frame, supports, statistics, termination and reason. No mesh when the job is
+// infeasible. `problem` is left as it was solved last: its balance half planes drawn in as the print asked for.
 Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting, FrameProblem* problem,
                                                      PrinterReport* report, RunContext& context);
 

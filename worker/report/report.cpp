@@ -148,6 +148,32 @@ json to_json(const Statistics& s) {
           {"balance", s.balance}};
 }
 
+json to_json(const PlannedSupports& supports) {
+  const SupportFacts& facts = supports.facts;
+  json out = {{"count", facts.internal + facts.external},
+              {"internal", facts.internal},
+              {"external", facts.external},
+              {"length_mm", facts.length_mm},
+              {"volume_mm3", facts.internal_volume_mm3 + facts.external_volume_mm3},
+              {"internal_volume_mm3", facts.internal_volume_mm3},
+              {"external_volume_mm3", facts.external_volume_mm3},
+              {"weight_g", facts.weight_g},
+              {"nodes_held_by_wall", supports.plan.held_by_wall},
+              {"nodes_held_by_plate", supports.plan.held_by_plate},
+              {"print_state", {{"worst_vertical_deformation_mm", supports.state.worst_deformation_mm}}}};
+  const Overhang& overhang = supports.overhang;
+  const double beyond = overhang.roof_beyond_mm2 + overhang.underside_beyond_mm2;
+  out["overhang"] = {
+      {"flat_roof_mm2", overhang.roof_mm2},
+      {"flat_underside_mm2", overhang.underside_mm2},
+      {"roof_beyond_mm2", overhang.roof_beyond_mm2},
+      {"underside_beyond_mm2", overhang.underside_beyond_mm2},
+      {"cavity_surface_mm2", supports.cavity_surface_mm2},
+      {"beyond_share", supports.cavity_surface_mm2 > 0 ? beyond / supports.cavity_surface_mm2 : 0}};
+  if (supports.state.limit_mm) out["print_state"]["limit_mm"] = *supports.state.limit_mm;
+  return out;
+}
+
 json refused_json(const PrinterReport& report) {
   return {{"printer", report.printer},
           {"material", report.material},
@@ -186,7 +212,8 @@ json to_json(const PrinterReport& report) {
               {"topology_volume_mm3", result.topology.volume_mm3},
               {"geometry_volume_mm3", result.geometry.volume_mm3},
               {"iterations",
-               {{"outer", result.outer_iterations}, {"interior_point", result.interior_point_iterations},
+               {{"outer", result.outer_iterations},
+                {"interior_point", result.interior_point_iterations},
                 {"factorisations", result.factorisations}}},
               {"max_displacement_mm", result.evaluation.max_displacement_mm},
               {"max_axial_ratio", result.evaluation.max_axial_ratio},
@@ -204,6 +231,7 @@ json to_json(const PrinterReport& report) {
     out["warm_start"] = {{"job_id", report.warm_start->job_id},
                          {"reused", report.warm_start->reused},
                          {"detail", report.warm_start->detail}};
+  if (report.supports && report.voxel_mm) out["supports"] = to_json(*report.supports);
   if (s.balance_margin_mm) out["balance_margin_mm"] = *s.balance_margin_mm;
   if (s.printed_balance_margin_mm) out["printed_balance_margin_mm"] = *s.printed_balance_margin_mm;
   add_bounds(result, out);

@@ -22,6 +22,8 @@
 #include "worker/skin/build_skin.h"
 #include "worker/solid/contact.h"
 #include "worker/solid/solid.h"
+#include "worker/support/overhang.h"
+#include "worker/support/print_state.h"
 
 namespace skinframe {
 
@@ -88,6 +90,22 @@ struct WarmStartReport {
   std::string detail;  // why not all of them, where it is not all
 };
 
+// Of the exported support struts. A node where struts end on each other is counted in the volume of each.
+struct SupportFacts {
+  int internal = 0, external = 0;  // struts
+  double length_mm = 0;            // of their axes
+  double internal_volume_mm3 = 0, external_volume_mm3 = 0, weight_g = 0;
+};
+
+struct PlannedSupports {
+  SupportPlan plan;
+  PrintState state;
+  Overhang overhang;              // of the skin, with the supports in place
+  double cavity_surface_mm2 = 0;  // of M1
+  SupportFacts facts;             // once they are written
+};
+nlohmann::json to_json(const PlannedSupports& supports);
+
 // Everything that is known when one printer's part ends, by result or by a bound that cannot be kept.
 struct PrinterReport {
   std::string printer, material;
@@ -110,6 +128,7 @@ struct PrinterReport {
   std::vector<std::string> files;  // in the printer's folder
   std::vector<std::string> warnings;
   std::optional<WarmStartReport> warm_start;
+  std::optional<PlannedSupports> supports;  // of extrusion printers
   std::map<std::string, double> seconds;
 };
 nlohmann::json to_json(const PrinterReport& report);

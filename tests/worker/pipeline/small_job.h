@@ -19,6 +19,17 @@ inline PrinterRequest sinterstation_pa() {
   return request;
 }
 
+// Leans 45 degrees and bridges 8 mm.
+inline PrinterRequest makerbot_pla() {
+  PrinterRequest request;
+  request.printer = {"makerbot-replicator-2", PrintProcess::kExtrusion, 0.4, {225, 145, 150}, 5};
+  auto curve = PrintableLength::make({{45, std::nullopt}, {60, 16.0}, {90, 8.0}}, false, "made up");
+  SKINFRAME_CHECK(curve.ok());
+  request.printer.printable_length = std::move(curve).value();
+  request.material = {"pla", 2673, 1533, 92, 52, 60, 1.24};
+  return request;
+}
+
 inline JobRequest sample_job(const std::string& sample, double size_mm, int skin_nodes,
                              const std::filesystem::path& folder) {
   RunContext context;
