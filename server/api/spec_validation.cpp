@@ -193,7 +193,6 @@ absl::Status check_options(const v1::JobOptions& o) {
     if (!status.ok()) return status;
   }
   if (o.smooth() == v1::SMOOTH_ON) return not_built("options.smooth on");
-  if (o.orient() == v1::ORIENT_BEST) return not_built("options.orient best");
   return absl::OkStatus();
 }
 

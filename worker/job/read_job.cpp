@@ -148,8 +148,7 @@ JobOptions parse_options(const json& item) {
   options.seed = item.at("seed").get<std::uint64_t>();
   if (item.at("smooth").get<std::string>() == "on")
     throw Refusal{unsupported("smooth \"on\" is not built yet; leave it at auto or off")};
-  if (item.at("orient").get<std::string>() == "best")
-    throw Refusal{unsupported("orient \"best\" is not built yet; leave it at keep")};
+  options.orient = choice<Orient>(item, "orient", {{"keep", Orient::kKeep}, {"best", Orient::kBest}});
   return options;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "worker/mesh/read_mesh.h"
+#include "worker/pipeline/orient_solid.h"
 #include "worker/solid/place.h"
 #include "worker/solid/repair.h"
 
@@ -52,8 +53,16 @@ Result<PreparedSolid> prepare_solid(const JobRequest& request, RunContext& conte
                                     wanted_edge / repaired_edge, repaired_edge));
     }
   }
+  std::optional<OrientationFacts> orientation;
+  if (request.options.orient == Orient::kBest) {
+    auto oriented = orient_solid(solid, request);
+    if (!oriented) return oriented.error();
+    solid = std::move(oriented.value().solid);
+    orientation = std::move(oriented.value().facts);
+  }
   Contact contact = find_contact(solid);
-  MeshFacts facts{request.mesh_name, file->format, std::move(repairs), std::move(repaired.value().warnings)};
+  MeshFacts facts{request.mesh_name, file->format, std::move(repairs), std::move(repaired.value().warnings),
+                  std::move(orientation)};
   facts.repairs.insert(facts.repairs.begin(), file->notes.begin(), file->notes.end());
   return PreparedSolid{std::move(solid), std::move(contact), std::move(facts)};
 }

@@ -62,6 +62,7 @@ struct Load {
 };
 
 enum class BalanceMode { kAuto, kRequire, kOff };
+enum class Orient { kKeep, kBest };
 enum class StageOrder { kTight, kPaper };
 
 struct JobOptions {
@@ -72,6 +73,7 @@ struct JobOptions {
   std::optional<double> voxel_mm;  // of the final solid
   bool no_optimize = false;        // radii stay at their lower bounds
   StageOrder order = StageOrder::kTight;
+  Orient orient = Orient::kKeep;
   double displacement_limit_mm = 0.05;  // epsilon of (6)
   std::uint64_t seed = 1;
 };

@@ -74,6 +74,21 @@ json sampling_json(const SamplingFacts& facts) {
   return out;
 }
 
+json tried_json(const OrientationFacts::Tried& tried) {
+  json rows = json::array();
+  for (int row = 0; row < 3; ++row) rows.push_back(vector_json(tried.rotation.row(row)));
+  return {{"rotation", rows},
+          {"support_estimate_mm3", tried.support_estimate_mm3},
+          {"standing_margin_mm", tried.margin_mm}};
+}
+
+json orientation_json(const OrientationFacts& facts) {
+  return {{"candidates", facts.candidates},
+          {"passed_over", facts.passed_over},
+          {"chosen", facts.chosen ? tried_json(*facts.chosen) : json(nullptr)},
+          {"runner_up", facts.runner_up ? tried_json(*facts.runner_up) : json(nullptr)}};
+}
+
 }  // namespace
 
 const char* to_string(Reason reason) {
@@ -119,17 +134,19 @@ Reason reason_of(ErrorKind kind) {
 }
 
 json mesh_json(const MeshFacts& facts, const Solid& solid, const Contact& contact) {
-  return {{"name", facts.name},
-          {"format", facts.format},
-          {"vertices", solid.mesh().vertices.size()},
-          {"triangles", solid.mesh().triangles.size()},
-          {"size_mm", vector_json(solid.box().extent())},
-          {"volume_mm3", solid.volume_mm3()},
-          {"area_mm2", solid.area_mm2()},
-          {"stands", contact.stands},
-          {"standing_margin_mm", contact.margin_mm},
-          {"repairs", facts.repairs},
-          {"warnings", facts.warnings}};
+  json out = {{"name", facts.name},
+              {"format", facts.format},
+              {"vertices", solid.mesh().vertices.size()},
+              {"triangles", solid.mesh().triangles.size()},
+              {"size_mm", vector_json(solid.box().extent())},
+              {"volume_mm3", solid.volume_mm3()},
+              {"area_mm2", solid.area_mm2()},
+              {"stands", contact.stands},
+              {"standing_margin_mm", contact.margin_mm},
+              {"repairs", facts.repairs},
+              {"warnings", facts.warnings}};
+  if (facts.orientation) out["orientation"] = orientation_json(*facts.orientation);
+  return out;
 }
 
 json to_json(const Statistics& s) {

@@ -42,9 +42,22 @@ enum class Reason {
 const char* to_string(Reason reason);  // "NONE", "PARTIAL", "INVALID_INPUT", ...
 Reason reason_of(ErrorKind kind);
 
+// How --orient best put the body down: by an estimate on its surface (support/orient_body.h).
+struct OrientationFacts {
+  struct Tried {
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // of the body as the file and --up have it
+    double support_estimate_mm3 = 0;
+    double margin_mm = 0;  // of the solid's centroid inside its base contact
+  };
+  std::optional<Tried> chosen, runner_up;  // no choice: nothing to rank by, or nothing that fits
+  int candidates = 0;
+  int passed_over = 0;  // better ones that do not fit every tray
+};
+
 struct MeshFacts {
   std::string name, format;
   std::vector<std::string> repairs, warnings;
+  std::optional<OrientationFacts> orientation;  // with --orient best
 };
 // The "mesh" object, of the placed and repaired solid.
 nlohmann::json mesh_json(const MeshFacts& facts, const Solid& solid, const Contact& contact);

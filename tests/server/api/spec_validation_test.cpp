@@ -92,7 +92,6 @@ TEST(SpecValidation, TheInputIsAMeshByItsHash) {
 TEST(SpecValidation, WhatIsNotBuiltIsUnimplementedByName) {
   constexpr auto kUnimplemented = absl::StatusCode::kUnimplemented;
   expect_refused([](auto& s) { s.mutable_options()->set_smooth(v1::SMOOTH_ON); }, "smooth", kUnimplemented);
-  expect_refused([](auto& s) { s.mutable_options()->set_orient(v1::ORIENT_BEST); }, "orient", kUnimplemented);
 }
 
 TEST(SpecValidation, AFrameProblemStandsAloneAndWhatStandsBesideItIsNamed) {

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Supports of whole bodies: no layer starts in the air, and hardly any skin hangs too far from what holds it.
+// The frame is the sampled one, skin struts alone: what self weight leaves of it, and the hardest case for
+// supports.
+#include "worker/pipeline/support_print.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/worker/pipeline/small_job.h"
+#include "worker/frame/sample_frame.h"
+#include "worker/pipeline/pose_problem.h"
+#include "worker/pipeline/prepare_solid.h"
+#include "worker/pipeline/sample_by_stress.h"
+#include "worker/support/layers.h"
+
+namespace skinframe {
+namespace {
+
+class SupportedBodies : public testing::TestWithParam<const char*> {};
+
+TEST_P(SupportedBodies, PrintWithoutIslandsAndWithHardlyAnyFreeOverhang) {
+  test::TemporaryFolder folder;
+  JobRequest job = test::sample_job(GetParam(), 60, 80, folder.path());
+  job.printers = {test::makerbot_pla()};
+  const PrinterProfile& printer = job.printers.front().printer;
+  RunContext context;
+  const auto prepared = prepare_solid(job, context);
+  ASSERT_TRUE(prepared.ok()) << prepared.error().message;
+  const auto skin =
+      build_skin(prepared->solid, SkinOptions{.thickness_mm = printer.skin_thickness_mm()}, context);
+  ASSERT_TRUE(skin.ok()) << skin.error().message;
+  job.options.internal_nodes = 0;
+  const auto sampled = sample_frame(*skin, frame_options(job.printers.front(), job), context);
+  ASSERT_TRUE(sampled.ok()) << sampled.error().message;
+  FrameProblem problem;
+  problem.material = job.printers.front().material;
+  problem.frame = sampled->frame;
+  problem.fixed = hold_contact(problem.frame, sampled->contact_nodes, Supports::kPinned);
+  problem.displacement_limit_mm = 0.05;
+  const std::vector<double> radii_mm(problem.frame.struts.size(), printer.min_radius_mm);
+
+  const auto supports = plan_print(problem, radii_mm, *skin, printer, context);
+  ASSERT_TRUE(supports.ok() && supports->has_value());
+  const PlannedSupports& planned = **supports;
+  EXPECT_TRUE(planned.state.holds());
+  EXPECT_LE(planned.overhang.roof_beyond_mm2 + planned.overhang.underside_beyond_mm2,
+            0.02 * planned.cavity_surface_mm2);
+  // On a coarser lattice the thinnest struts would fall between its cells.
+  const Layers layers = find_islands(body_of(*skin), skin->body_box_mm, problem.frame, radii_mm, planned.plan,
+                                     *printer.printable_length, LayerOptions{0.4, 0.4});
+  EXPECT_GT(layers.count, 10);
+  for (const Island& island : layers.islands)
+    ADD_FAILURE() << island.area_mm2 << " mm2 start in the air at " << island.at_mm.transpose();
+  if (std::string(GetParam()) == "hanging-ball") {  // the test can say no
+    const Layers bare = find_islands(body_of(*skin), skin->body_box_mm, problem.frame, radii_mm,
+                                     SupportPlan{}, *printer.printable_length, LayerOptions{0.4, 0.4});
+    EXPECT_FALSE(bare.islands.empty());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Samples, SupportedBodies,
+                         testing::Values("hanging-ball", "ring", "egg", "relief", "bracket", "stool"),
+                         [](const auto& body) {
+                           std::string name = body.param;
+                           for (char& c : name)
+                             if (c == '-') c = '_';
+                           return name;
+                         });
+
+}  // namespace
+}  // namespace skinframe
