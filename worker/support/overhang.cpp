@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kPointInSkins = 0.5;     // how deep a point to be held stands in the skin
-constexpr double kLevelInPitches = 0.25;  // steps down that small count as level
+constexpr double kLevelInPitches = 0.02;  // steps down that small count as level: what rounding makes of it
 constexpr double kLeastDownward = 0.3;    // vertical part of a flat cell's normal: guards the area
 constexpr double kStepInPitches = 0.25;
 constexpr int kDirections[8][2] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}};
