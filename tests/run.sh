@@ -3,6 +3,7 @@
 # Installs what is missing, builds, runs all tests. Arguments go to ctest, for example: ./tests/run.sh -R worker.mesh
 # The corpus tests find real meshes in SKINFRAME_MODELS (default ../shared/models beside the checkout); where CI=true
 # and they are absent, they fail; elsewhere they are not registered and this script says so.
+# SKINFRAME_CORPUS=full takes every model of the corpus at its full size through the whole job: half an hour more.
 set -euo pipefail
 here=$(cd "$(dirname "$0")/.." && pwd)
 export SKINFRAME_MODELS=${SKINFRAME_MODELS:-$here/../shared/models}

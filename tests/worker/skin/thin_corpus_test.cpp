@@ -3,9 +3,7 @@
 // CI=true).
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-#include <filesystem>
-
+#include "tests/fixture/corpus.h"
 #include "tests/worker/skin/thin_rays.h"
 #include "worker/mesh/read_mesh.h"
 #include "worker/skin/build_skin.h"
@@ -26,11 +24,9 @@ void PrintTo(const ThinModel& model, std::ostream* out) {
 class ThinCorpus : public testing::TestWithParam<ThinModel> {};
 
 TEST_P(ThinCorpus, VolumeIsThatOfTheRaysWithinTwoPercent) {
-  const char* given = std::getenv("SKINFRAME_MODELS");
-  const std::filesystem::path models = given != nullptr ? given : SKINFRAME_DEFAULT_MODELS;
   RunContext context;
   context.threads = 2;
-  auto file = read_mesh(models / "good" / (std::string(GetParam().id) + ".obj"), {}, context);
+  auto file = read_mesh(test::corpus_folder() / "good" / (std::string(GetParam().id) + ".obj"), {}, context);
   ASSERT_TRUE(file.ok()) << file.error().message;
   auto outcome =
       repair(put_on_plate(scale_to_largest_edge(std::move(file->mesh), GetParam().size_mm)), {}, context);

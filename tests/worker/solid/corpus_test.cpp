@@ -4,12 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 
+#include "tests/fixture/corpus.h"
 #include "worker/mesh/read_mesh.h"
 #include "worker/solid/place.h"
 #include "worker/solid/repair.h"
@@ -22,47 +19,9 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-std::filesystem::path models() {
-  const char* given = std::getenv("SKINFRAME_MODELS");
-  return given != nullptr ? given : SKINFRAME_DEFAULT_MODELS;
-}
-
-std::map<std::string, json> read_manifest() {
-  std::ifstream file(models() / "manifest.json");
-  const json whole = json::parse(file, nullptr, false);
-  std::map<std::string, json> entries;
-  if (!whole.is_object()) return entries;
-  for (const char* list : {"good", "bad"}) {
-    for (const json& entry : whole[list]) entries[entry["id"]] = entry;
-  }
-  return entries;
-}
-
-const std::map<std::string, json>& manifest() {
-  static const std::map<std::string, json> entries = read_manifest();
-  return entries;
-}
-
-std::vector<std::string> all_ids() {
-  std::vector<std::string> ids;
-  for (const auto& [id, entry] : manifest()) ids.push_back(id);
-  return ids;
-}
-
 constexpr const char* kOpenBust = "open_demosthenes";
 
-// What a refusal has to say, and what a repair has to tell. Every file that must be refused or repaired
-// stands here, so that a sentence which does not name the defect is found.
-const std::map<std::string, std::vector<std::string>> kRefusals = {
-    {"open_plane_many_holes", {"open", "341 boundary edges", "near ("}},
-    {"dupfaces_chair", {"open"}},
-    {"triangle_soup", {"open", "100 openings"}},
-    {"empty_stl", {"no triangle"}},
-    {"moebius", {"one-sided", "Moebius"}},
-    {"nan_vertex", {"triangle 37: corner 1 is not finite"}},
-    {"truncated", {"truncated", "announces 1654 triangles", "room for 1616"}},
-    {"lying_count", {"4294967295 triangles", "room for 12"}},
-};
+// What a repair has to tell. Every file that must be repaired stands here.
 const std::map<std::string, std::vector<std::string>> kRepairs = {
     {kOpenBust, {"capped the flat cut of 67 edges"}},
     {"nonmanifold_joined_tets", {"inner wall"}},
@@ -81,7 +40,7 @@ struct Repaired {
 
 Result<Repaired> read_and_repair(const json& entry) {
   RunContext context;
-  auto file = read_mesh(models() / entry["file"].get<std::string>(), {}, context);
+  auto file = read_mesh(test::corpus_folder() / entry["file"].get<std::string>(), {}, context);
   if (!file.ok()) return file.error();
   TriangleMesh mesh = std::move(file.value().mesh);
   if (!entry["size_mm"].is_null())
@@ -131,15 +90,15 @@ void expect_told(const std::string& id, const Repaired& repaired) {
 class CorpusFile : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(CorpusFile, ComesOutAsItsManifestSays) {
-  const json& entry = manifest().at(GetParam());
+  const json& entry = test::corpus().at(GetParam());
   const std::string expected = entry["expected"];
   const auto repaired = read_and_repair(entry);
   RecordProperty("outcome", repaired.ok() ? "accepted" : repaired.error().message);
   if (!repaired.ok()) {
     ASSERT_TRUE(expected == "reject" || expected == "either") << repaired.error().message;
     EXPECT_EQ(repaired.error().kind, ErrorKind::kInvalidInput);
-    const auto words = kRefusals.find(GetParam());
-    ASSERT_NE(words, kRefusals.end())
+    const auto words = test::corpus_refusals().find(GetParam());
+    ASSERT_NE(words, test::corpus_refusals().end())
         << "refused, and nothing says with what words: " << repaired.error().message;
     for (const std::string& word : words->second) EXPECT_THAT(repaired.error().message, HasSubstr(word));
     return;
@@ -166,17 +125,17 @@ TEST_P(CorpusFile, ComesOutAsItsManifestSays) {
   expect_told(GetParam(), *repaired);
 }
 
-INSTANTIATE_TEST_SUITE_P(Corpus, CorpusFile, ::testing::ValuesIn(all_ids()),
+INSTANTIATE_TEST_SUITE_P(Corpus, CorpusFile, ::testing::ValuesIn(test::corpus_ids()),
                          [](const auto& tested) { return tested.param; });
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(CorpusFile);  // the next test says that the corpus is absent
 
 TEST(Corpus, IsThereAndHoldsWhatIsExpectedOfItByName) {
-  ASSERT_FALSE(manifest().empty()) << "no manifest.json with models in " << models();
-  for (const auto& [id, words] : kRefusals) EXPECT_EQ(manifest().count(id), 1u) << id;
-  for (const auto& [id, words] : kRepairs) EXPECT_EQ(manifest().count(id), 1u) << id;
-  for (const auto& [id, entry] : manifest()) {
+  ASSERT_FALSE(test::corpus().empty()) << "no manifest.json with models in " << test::corpus_folder();
+  for (const auto& [id, words] : test::corpus_refusals()) EXPECT_EQ(test::corpus().count(id), 1u) << id;
+  for (const auto& [id, words] : kRepairs) EXPECT_EQ(test::corpus().count(id), 1u) << id;
+  for (const auto& [id, entry] : test::corpus()) {
     if (entry["expected"] == "reject") {
-      EXPECT_EQ(kRefusals.count(id), 1u) << id;
+      EXPECT_EQ(test::corpus_refusals().count(id), 1u) << id;
     }
     if (entry["expected"] == "accept_after_repair") {
       EXPECT_EQ(kRepairs.count(id), 1u) << id;
@@ -186,8 +145,8 @@ TEST(Corpus, IsThereAndHoldsWhatIsExpectedOfItByName) {
 
 // Why the bust is not compared with the number in the manifest: that number is this sum, and no cap gives it.
 TEST(Corpus, TheManifestLeavesTheConeToTheCutOutOfTheOpenBust) {
-  ASSERT_EQ(manifest().count(kOpenBust), 1u);
-  const json& entry = manifest().at(kOpenBust);
+  ASSERT_EQ(test::corpus().count(kOpenBust), 1u);
+  const json& entry = test::corpus().at(kOpenBust);
   const auto repaired = read_and_repair(entry);
   ASSERT_TRUE(repaired.ok()) << repaired.error().message;
   const TriangleMesh& mesh = repaired->placed;
@@ -202,11 +161,11 @@ TEST(Corpus, TheManifestLeavesTheConeToTheCutOutOfTheOpenBust) {
 }
 
 TEST(Corpus, TheSameBodyInTwoFormatsHasTheSameVolume) {
-  ASSERT_EQ(manifest().count("spot_low"), 1u);
-  const auto obj = read_and_repair(manifest().at("spot_low"));
+  ASSERT_EQ(test::corpus().count("spot_low"), 1u);
+  const auto obj = read_and_repair(test::corpus().at("spot_low"));
   ASSERT_TRUE(obj.ok());
   for (const char* other : {"ply_big_endian_f64", "stl_named_obj"}) {
-    const auto twin = read_and_repair(manifest().at(other));
+    const auto twin = read_and_repair(test::corpus().at(other));
     ASSERT_TRUE(twin.ok()) << other << ": " << twin.error().message;
     EXPECT_NEAR(twin->outcome.solid.volume_mm3() / obj->outcome.solid.volume_mm3(), 1, 1e-4) << other;
   }
