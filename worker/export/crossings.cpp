@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 namespace skinframe {
@@ -16,6 +17,7 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Box = CGAL::Box_intersection_d::Box_with_info_d<float, 3, int>;
 constexpr std::size_t kPairsABatch = 1 << 16;
+constexpr double kBoxRounding = 1e-6;  // relative, absolute below 1 mm: more than a turn and a float lose
 
 Kernel::Point_3 point(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
@@ -48,15 +50,20 @@ bool cross(const TriangleMesh& mesh, int s, int t) {
 }  // namespace
 
 std::vector<std::pair<int, int>> crossing_triangles(const TriangleMesh& mesh, const std::vector<int>& among) {
+  // CGAL sweeps along one axis what it cannot part along another, so that flat walls square to the axes cost
+  // pairs by the square. Seen askew they do not; boxes only propose, a little wider than need be.
+  const Eigen::Matrix3d askew = Eigen::AngleAxisd(0.7, Eigen::Vector3d(3, 5, 8).normalized()).matrix();
   std::vector<Box> boxes;
   boxes.reserve(among.size());
   for (const int t : among) {
-    const auto& corners = mesh.triangles[t];
     Eigen::AlignedBox3d box;
-    for (int v : corners) box.extend(mesh.vertices[v]);
-    // Coordinates are floats, so their box is exact in float.
-    const Eigen::Vector3f low = box.min().cast<float>(), high = box.max().cast<float>();
-    float from[3] = {low.x(), low.y(), low.z()}, to[3] = {high.x(), high.y(), high.z()};
+    for (int v : mesh.triangles[t]) box.extend(askew * mesh.vertices[v]);
+    float from[3], to[3];
+    for (int k = 0; k < 3; ++k) {
+      const double room = kBoxRounding * (1.0 + std::max(std::abs(box.min()[k]), std::abs(box.max()[k])));
+      from[k] = static_cast<float>(box.min()[k] - room);
+      to[k] = static_cast<float>(box.max()[k] + room);
+    }
     boxes.emplace_back(from, to, t);
   }
   std::vector<std::pair<int, int>> batch, found;

@@ -5,6 +5,13 @@
 #include <openvdb/tools/VolumeToMesh.h>
 
 namespace skinframe {
+namespace {
+
+// A flat wall that runs through the grid's points leaves there the sign to rounding, and its surface becomes
+// a crumpled sheet of triangles back to back. A thousandth of a voxel deeper it does not.
+constexpr double kOffLatticeInVoxels = 1e-3;
+
+}  // namespace
 
 openvdb::FloatGrid::Ptr distance_grid(const TriangleMesh& mesh, double voxel_mm, double outer_voxels,
                                       double inner_voxels) {
@@ -24,7 +31,8 @@ TriangleMesh iso_surface(const openvdb::FloatGrid& grid, double iso_mm) {
   std::vector<openvdb::Vec3s> points;
   std::vector<openvdb::Vec3I> triangles;
   std::vector<openvdb::Vec4I> quads;
-  openvdb::tools::volumeToMesh(grid, points, triangles, quads, iso_mm, 0.0);
+  const double off_lattice = kOffLatticeInVoxels * grid.voxelSize()[0];
+  openvdb::tools::volumeToMesh(grid, points, triangles, quads, iso_mm - off_lattice, 0.0);
 
   TriangleMesh mesh;
   mesh.vertices.reserve(points.size());

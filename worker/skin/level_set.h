@@ -13,9 +13,9 @@ namespace skinframe {
 openvdb::FloatGrid::Ptr distance_grid(const TriangleMesh& mesh, double voxel_mm, double outer_voxels,
                                       double inner_voxels);
 
-// The surface {grid = iso_mm}, outward (towards larger values), coordinates exact floats. Closed where the
-// grid's bands hold the surface, but single edges may have four triangles: mend_edges() is for those. No
-// adaptivity: OpenVDB's adaptive meshes cut themselves.
+// The surface {grid = iso_mm}, a thousandth of a voxel towards smaller values, outward (towards larger
+// values), coordinates exact floats. Closed where the grid's bands hold the surface, but single edges may
+// have four triangles: mend_edges() is for those. No adaptivity: OpenVDB's adaptive meshes cut themselves.
 TriangleMesh iso_surface(const openvdb::FloatGrid& grid, double iso_mm);
 
 }  // namespace skinframe

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
+
 #include "tests/worker/skin/bodies.h"
 #include "worker/export/untangle.h"
 #include "worker/skin/mend_edges.h"
@@ -23,6 +25,23 @@ TEST(Crossings, ASphereHasNone) { EXPECT_TRUE(crossing_triangles(bodies::sphere(
 TEST(Crossings, BoxesThatOverlapCrossAndBoxesApartDoNot) {
   EXPECT_FALSE(crossing_triangles(two_boxes(5)).empty());
   EXPECT_TRUE(crossing_triangles(two_boxes(11)).empty());
+}
+
+// All triangles of such a wall have the same place along one axis, which a sweep along it cannot part.
+TEST(Crossings, FlatWallsSquareToTheAxesCostNoMoreThanTurnedOnes) {
+  constexpr int kCells = 120;
+  const TriangleMesh square =
+      bodies::blocks({kCells, kCells, kCells}, {0.5, 0.5, 0.5}, [](int, int, int) { return true; });
+  TriangleMesh turned = square;
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -3).normalized()).matrix();
+  for (auto& v : turned.vertices) v = (turn * v).cast<float>().cast<double>();
+  const auto cost = [](const TriangleMesh& mesh) {
+    const std::clock_t start = std::clock();
+    EXPECT_TRUE(crossing_triangles(mesh).empty());
+    return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  };
+  const double of_turned = cost(turned);
+  EXPECT_LT(cost(square), 3.0 * of_turned);
 }
 
 TEST(Crossings, AFoldFlatOntoItsNeighbourIsFound) {

@@ -44,6 +44,17 @@ TEST(BuildSkin, HollowOfABoxIsABox) {
   EXPECT_NEAR(skin.plate_z_mm, 0.0, 1e-9);
 }
 
+// M1's walls at 1.2 and 46.2 mm run through points of both grids (0.3 and 0.6 mm).
+TEST(BuildSkin, AWallThroughThePointsOfTheGridIsOneSheet) {
+  TriangleMesh on_points = bodies::box(47, 47, 47), off_points = on_points;
+  for (auto& v : on_points.vertices) v += Eigen::Vector3d::Constant(0.2);
+  for (auto& v : off_points.vertices) v += Eigen::Vector3d::Constant(0.33);
+  const Skin on = skin_of(on_points, {.thickness_mm = 1.0}), off = skin_of(off_points, {.thickness_mm = 1.0});
+  EXPECT_NEAR(surface_area(on.inner_surface), 6 * 45.0 * 45.0, 0.01 * 6 * 45 * 45);
+  EXPECT_LT(on.inner_surface.triangles.size(), 1.1 * off.inner_surface.triangles.size());
+  EXPECT_NEAR(on.cavity_volume_mm3, 45.0 * 45.0 * 45.0, 0.002 * 45 * 45 * 45);
+}
+
 TEST(BuildSkin, HollowOfATorusKeepsItsHole) {
   const Skin skin = skin_of(bodies::torus(24, 9), {.thickness_mm = 0.8});
   const double hollow = 2.0 * kPi * kPi * 24.0 * 8.2 * 8.2;
