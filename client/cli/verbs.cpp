@@ -91,7 +91,7 @@ class TerminalWatch {
   explicit TerminalWatch(ProgressDisplay& display) : display_(display) {}
   void show(const v1::JobEvent& event) {
     const std::string stage = event.progress().printer_id() + "/" + event.progress().stage();
-    if (!event.has_progress() || stage != stage_) {
+    if (!event.has_progress() || stage != stage_ || !event.progress().note().empty()) {
       display_.finish();
       print_event(event, false);
     }

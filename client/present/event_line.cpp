@@ -53,6 +53,7 @@ std::string progress_text(const v1::JobProgress& p) {
   if (p.has_struts_left()) out += fmt::format("  {} struts", p.struts_left());
   if (p.has_violation()) out += fmt::format("  violation {:.1e}", p.violation());
   if (p.has_seconds_left()) out += fmt::format("  {:.0f} s left", p.seconds_left());
+  if (!p.note().empty()) out += "  " + one_line(p.note());
   return out;
 }
 

@@ -45,7 +45,7 @@ std::string progress_bar(const v1::JobProgress& progress, std::size_t columns) {
 void ProgressDisplay::show(const v1::JobEvent& event) {
   const std::lock_guard lock(mutex_);
   if (paused_) return;
-  if (!event.has_progress()) {
+  if (!event.has_progress() || !event.progress().note().empty()) {
     line(event_text(event));
     return;
   }

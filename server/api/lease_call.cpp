@@ -19,6 +19,7 @@ v1::Assignment assignment_of(const JobRecord& record, const AttemptPolicy& polic
   *assignment.mutable_heartbeat_interval() = to_duration(policy.heartbeat);
   *assignment.mutable_lease_duration() = to_duration(policy.lease);
   *assignment.mutable_lease_expire_time() = to_timestamp(record.lease.expires);
+  if (record.job.has_checkpoint()) *assignment.mutable_checkpoint() = record.job.checkpoint();
   if (record.deadline) *assignment.mutable_deadline() = to_timestamp(*record.deadline);
   return assignment;
 }

@@ -77,6 +77,33 @@ absl::StatusOr<JobRecord> WorkerService::look_first(const v1::HeartbeatRequest& 
   return decision->has_value() ? parts_.store.modify(request.job_id(), decide) : std::move(record);
 }
 
+grpc::ServerUnaryReactor* WorkerService::Checkpoint(grpc::CallbackServerContext* context,
+                                                    const v1::CheckpointRequest* request,
+                                                    v1::CheckpointResponse*) {
+  return answer_on(
+      parts_.executor, context,
+      [=, this] { return log_refusal(checkpoint(*request), request->job_id(), "checkpoint"); },
+      request->job_id());
+}
+
+absl::Status WorkerService::checkpoint(const v1::CheckpointRequest& request) {
+  if (auto status = validate_checkpoint(request); !status.ok()) return status;
+  const auto job = parts_.store.get(request.job_id());
+  if (!job.ok()) return gone_is_aborted(job.status());
+  const auto artifacts = parts_.artifacts.of(job->job.tenant());
+  if (!artifacts.ok()) return artifacts.status();
+  const auto facts = (*artifacts)->stat(request.checkpoint().sha256());
+  const auto after = parts_.store.modify(request.job_id(), [&](const JobRecord& record) -> Decision {
+    Decision decision = decide_checkpoint(record, request);
+    if (!decision.ok()) return decision;  // a late worker hears of its token first
+    if (!facts.ok()) return facts.status();
+    if (!facts->complete || facts->size_bytes != request.checkpoint().size_bytes())
+      return absl::FailedPreconditionError("checkpoint: no artifact of this name and size is uploaded");
+    return decision;
+  });
+  return gone_is_aborted(after.status());
+}
+
 grpc::ServerUnaryReactor* WorkerService::Complete(grpc::CallbackServerContext* context,
                                                   const v1::CompleteRequest* request, v1::CompleteResponse*) {
   return answer_on(

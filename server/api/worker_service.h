@@ -16,12 +16,16 @@ class WorkerService final : public v1::WorkerService::CallbackService {
   grpc::ServerUnaryReactor* Heartbeat(grpc::CallbackServerContext* context,
                                       const v1::HeartbeatRequest* request,
                                       v1::HeartbeatResponse* response) override;
+  grpc::ServerUnaryReactor* Checkpoint(grpc::CallbackServerContext* context,
+                                       const v1::CheckpointRequest* request,
+                                       v1::CheckpointResponse* response) override;
   grpc::ServerUnaryReactor* Complete(grpc::CallbackServerContext* context, const v1::CompleteRequest* request,
                                      v1::CompleteResponse* response) override;
 
  private:
   absl::Status heartbeat(const v1::HeartbeatRequest& request, v1::HeartbeatResponse& response);
   absl::StatusOr<JobRecord> look_first(const v1::HeartbeatRequest& request, const Decide& decide);
+  absl::Status checkpoint(const v1::CheckpointRequest& request);
   absl::Status complete(const v1::CompleteRequest& request);
 
   Parts parts_;

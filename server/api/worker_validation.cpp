@@ -11,6 +11,8 @@
 namespace skinframe::server {
 namespace {
 
+constexpr std::int64_t kLargestCheckpoint = std::int64_t{64} << 20;
+constexpr std::size_t kLongestNote = 512;
 constexpr std::size_t kLongestId = 128;
 constexpr std::size_t kLongestWord = 128;  // a stage, a material, a verdict
 constexpr std::size_t kLongestDetail = 4096;
@@ -99,8 +101,21 @@ absl::Status validate_heartbeat(const v1::HeartbeatRequest& request) {
   for (const v1::JobProgress& progress : request.progress()) {
     if (auto status = check_word("progress.printer_id", progress.printer_id()); !status.ok()) return status;
     if (auto status = check_word("progress.stage", progress.stage()); !status.ok()) return status;
+    if (progress.note().size() > kLongestNote)
+      return invalid("progress.note has {} bytes, at most {} are allowed", progress.note().size(),
+                     kLongestNote);
   }
   return check_printers(request.printers());
+}
+
+absl::Status validate_checkpoint(const v1::CheckpointRequest& request) {
+  const v1::Checkpoint& checkpoint = request.checkpoint();
+  if (!is_sha256(checkpoint.sha256())) return invalid("checkpoint.sha256 is not a SHA-256");
+  if (checkpoint.size_bytes() < 1 || checkpoint.size_bytes() > kLargestCheckpoint) {
+    return invalid("checkpoint.size_bytes is {}, must be within 1 .. {}", checkpoint.size_bytes(),
+                   kLargestCheckpoint);
+  }
+  return check_word("checkpoint.stage", checkpoint.stage());
 }
 
 absl::Status validate_complete(const v1::CompleteRequest& request) {

@@ -10,6 +10,7 @@ namespace skinframe::server {
 
 absl::Status validate_lease(const v1::LeaseRequest& request);
 absl::Status validate_heartbeat(const v1::HeartbeatRequest& request);
+absl::Status validate_checkpoint(const v1::CheckpointRequest& request);
 absl::Status validate_complete(const v1::CompleteRequest& request);
 
 // INVALID_ARGUMENT: a printer that the job does not ask for, a frame's result of a job of a mesh. Progress

@@ -35,7 +35,10 @@ void move_job(Change& change, Trigger trigger, v1::Reason reason, const std::str
   job.set_state(*to);
   job.set_reason(reason);
   job.set_detail(detail);
-  if (is_final(*to)) *job.mutable_end_time() = to_timestamp(now);
+  if (is_final(*to)) {
+    *job.mutable_end_time() = to_timestamp(now);
+    job.clear_checkpoint();
+  }
 
   v1::JobEvent event = event_at(now);
   event.mutable_state()->set_state(*to);
@@ -201,6 +204,16 @@ Decision decide_heartbeat(const JobRecord& record, const v1::HeartbeatRequest& r
   return change;
 }
 
+Decision decide_checkpoint(const JobRecord& record, const v1::CheckpointRequest& request) {
+  if (!holds_lease(record, request.fencing_token())) return stale_token(record, request.fencing_token());
+  v1::Checkpoint checkpoint = request.checkpoint();
+  checkpoint.set_attempt(record.job.attempt());
+  if (MessageDifferencer::Equals(checkpoint, record.job.checkpoint())) return std::nullopt;
+  Change change{record, {}};
+  *change.record.job.mutable_checkpoint() = std::move(checkpoint);
+  return change;
+}
+
 Decision decide_complete(const JobRecord& record, const v1::CompleteRequest& request, Time now,
                          const AttemptPolicy& policy) {
   const std::string digest = sha256_hex(request.SerializeAsString());
@@ -221,6 +234,9 @@ Decision decide_complete(const JobRecord& record, const v1::CompleteRequest& req
     return change;
   }
   if (request.retryable()) {
+    // It may be the checkpoint itself that the process dies of.
+    const bool got_no_further = record.job.checkpoint().attempt() < record.job.attempt();
+    if (got_no_further) change.record.job.clear_checkpoint();
     const std::string why =
         request.detail().empty() ? std::string(reason_name(request.reason())) : request.detail();
     lose_attempt(change, request.reason(), why, now, policy);

@@ -43,6 +43,10 @@ Change decide_lease(const JobRecord& record, std::int64_t fencing_token, const s
 Decision decide_heartbeat(const JobRecord& record, const v1::HeartbeatRequest& request, Time now,
                           const AttemptPolicy& policy);
 
+// A checkpoint by the token's holder takes the place of the one before. ABORTED: the token is no longer the
+// job's. Nothing when it is there already.
+Decision decide_checkpoint(const JobRecord& record, const v1::CheckpointRequest& request);
+
 // Whether the worker shall stop: cancelled, or past the deadline.
 bool must_stop(const JobRecord& record, Time now);
 

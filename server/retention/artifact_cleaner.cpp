@@ -13,6 +13,7 @@ constexpr int kPage = 200;
 std::set<std::string> artifacts_of(const v1::Job& job) {
   std::set<std::string> names = {job.spec().mesh_sha256(), job.spec().frame_problem_sha256()};
   for (const v1::ResultFile& file : job.files()) names.insert(file.sha256());
+  names.insert(job.checkpoint().sha256());
   names.erase("");
   return names;
 }

@@ -18,7 +18,7 @@
 
 namespace skinframe::server {
 
-// All artifacts that the job refers to: its input and its results.
+// All artifacts that the job refers to: its input, its results, its checkpoint.
 std::set<std::string> artifacts_of(const v1::Job& job);
 
 class ArtifactCleaner final : public Duty {

@@ -64,6 +64,7 @@ inline std::string results_blob(const JobRecord& record) {
   *results.mutable_files() = record.job.files();
   if (record.job.has_frame()) *results.mutable_frame() = record.job.frame();
   results.set_reused_job_id(record.job.reused_job_id());
+  if (record.job.has_checkpoint()) *results.mutable_checkpoint() = record.job.checkpoint();
   return results.SerializeAsString();
 }
 

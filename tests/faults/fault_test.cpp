@@ -36,20 +36,20 @@ bool extended() {
 }
 
 FaultTest::FaultTest() : seed_(chosen_seed()), random_(seed_) {
+  set_problem(integration::tower(5, 5, 8, 40));
   std::printf("SKINFRAME_FAULTS_SEED=%u\n", seed_);
 }
 
 void FaultTest::begin(const FarmShape& shape, const std::filesystem::path& data) {
   farm_ = std::make_unique<FaultFarm>(scratch_.path(), shape, data);
   witness_ = std::make_unique<Witness>(farm_->addresses());
-  const std::string problem = integration::tower(5, 5, 8, 40).dump();
-  std::ofstream(scratch_ / "tower.json") << problem;
+  std::ofstream(scratch_ / "tower.json") << problem_;
   const auto alone = integration::run(
       {binary("skinframe-worker"), "solve-frame", scratch_ / "tower.json", "--out", scratch_ / "alone.json"},
       scratch_.path());
   ASSERT_EQ(alone.exit_code, 0) << alone.err;
   expected_ = timeless(read_file(scratch_ / "alone.json"));
-  problem_sha256_ = witness_->upload(problem);
+  problem_sha256_ = witness_->upload(problem_);
 }
 
 v1::JobSpec FaultTest::frame_job() {
@@ -68,7 +68,7 @@ v1::JobSpec FaultTest::mesh_job() {
   spec.set_mesh_sha256(witness_->upload(read_file(mesh)));
   spec.set_mesh_name("egg.stl");
   spec.add_printers()->set_printer_id("sinterstation-hiq");
-  spec.mutable_options()->set_size_mm(60);
+  spec.mutable_options()->set_size_mm(40);
   spec.mutable_options()->set_skin_nodes(60);
   spec.set_priority(1);
   return spec;

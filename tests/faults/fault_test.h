@@ -7,6 +7,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 
@@ -23,6 +24,7 @@ class FaultTest : public testing::Test {
  protected:
   FaultTest();
 
+  void set_problem(const nlohmann::json& problem) { problem_ = problem.dump(); }  // before begin()
   // Starts the farm, its witness, and puts the problem where the jobs find it.
   void begin(const FarmShape& shape, const std::filesystem::path& data = {});
   v1::JobSpec frame_job();
@@ -41,7 +43,7 @@ class FaultTest : public testing::Test {
   std::unique_ptr<Witness> witness_;
 
  private:
-  std::string problem_sha256_, expected_;
+  std::string problem_, problem_sha256_, expected_;
 };
 
 // Keeps so many jobs of a witness alive until it is told to stop.

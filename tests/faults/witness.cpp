@@ -152,6 +152,7 @@ void Witness::watch(std::stop_token stop, const std::string& job_id) {
       const std::lock_guard lock(mutex_);
       judges_.at(job_id).see(event);
       ++events_;
+      notes_[job_id] += event.progress().note();
       news_.notify_all();
     }
     if (reader->Finish().ok()) return;  // the server says that this was the end
@@ -196,6 +197,12 @@ v1::JobState Witness::state_of(const std::string& job_id) const {
 int Witness::attempt_of(const std::string& job_id) const {
   const std::lock_guard lock(mutex_);
   return judges_.at(job_id).attempt();
+}
+
+bool Witness::noted(const std::string& job_id, const std::string& words) const {
+  const std::lock_guard lock(mutex_);
+  const auto notes = notes_.find(job_id);
+  return notes != notes_.end() && notes->second.find(words) != std::string::npos;
 }
 
 std::string Witness::download(const std::string& sha256) {

@@ -51,6 +51,7 @@ class Witness {
   bool wait_for_all(std::chrono::seconds at_most);
   v1::JobState state_of(const std::string& job_id) const;
   int attempt_of(const std::string& job_id) const;
+  bool noted(const std::string& job_id, const std::string& words) const;  // in its progress
 
   // After the end of all jobs: asks for each job and each file again, reads in the logs of the workers which
   // results they hold for accepted, and compares each file PATH with expected[PATH] by `same`.
@@ -77,7 +78,8 @@ class Witness {
   std::stop_source end_;
   mutable std::mutex mutex_;
   std::condition_variable_any news_;
-  std::map<std::string, JobJudge> judges_;  // by job id
+  std::map<std::string, JobJudge> judges_;    // by job id
+  std::map<std::string, std::string> notes_;  // by job id, one after the other
   std::int64_t events_ = 0;
   std::int64_t reconnections_ = 0;
   int requests_made_ = 0;

@@ -45,6 +45,8 @@ QUEUE_IN_MEMORY ends
 LOSSES_DO_NOT_COUNT ends
 CANCEL_IS_FORGOTTEN safe
 UNDELIVERED_FORGETS safe
+NO_CHECKPOINT_FENCE safe
+CHECKPOINT_IS_LEFT safe
 DEFECTS
 [ "$bad" = 0 ] || { echo "check.sh: not as it should be" >&2; exit 1; }
 echo "the protocol holds, and every defect is caught"

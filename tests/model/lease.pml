@@ -15,7 +15,7 @@
  * Properties
  *   safe   no acknowledged job is lost; a repeated submission makes no second job; no result of an attempt that
  *          is over is accepted, and none twice (assertions); what has ended stays as it ended; a cancelled job is
- *          never queued again
+ *          never queued again; no checkpoint of an attempt that is over is kept, and none beyond the end
  *   ends   every acknowledged job ends (weak fairness: whoever can go on does so some time)
  *
  * A property that cannot fail proves nothing: each of these defects, by -D, must be caught (check.sh).
@@ -27,6 +27,8 @@
  *   LOSSES_DO_NOT_COUNT    a lost attempt does not count, so that a job that kills its workers goes on for ever
  *   CANCEL_IS_FORGOTTEN    the reaper queues a job again although its user has cancelled it
  *   UNDELIVERED_FORGETS    so does the server when a job did not reach its worker
+ *   NO_CHECKPOINT_FENCE    a checkpoint is judged by the job's state alone
+ *   CHECKPOINT_IS_LEFT     the end of a job leaves its checkpoint behind, so that the cleaner keeps it for ever
  */
 
 #define MAX_ATTEMPTS 2
@@ -48,6 +50,7 @@ byte token = 0;            /* of the current attempt */
 byte tokens_given = 0;
 byte lost = 0;
 bool cancel_requested = false;
+bool checkpoint = false;   /* the job refers to one; over the loss of an attempt it stays */
 
 /* volatile */
 bool in_queue = false;     /* QUEUE_IN_MEMORY only */
@@ -66,6 +69,9 @@ chan network = [2] of { byte, byte, mtype };
 
 inline end_as(s) {
   state = s;
+#ifndef CHECKPOINT_IS_LEFT
+  checkpoint = false;
+#endif
   assert(ended_as == absent);
   ended_as = s
 }
@@ -141,9 +147,10 @@ active [WORKERS] proctype Worker() {
   byte my_token;
   byte my_attempt;
   byte heartbeats;
+  bool kept;
   bool holds;
 idle:
-  my_token = 0; my_attempt = 0; heartbeats = 0; holds = false;
+  my_token = 0; my_attempt = 0; heartbeats = 0; kept = false; holds = false;
   /* Lease: one transaction looks for a queued job and gives it. */
   end_idle: atomic {
 #ifdef QUEUE_IN_MEMORY
@@ -183,6 +190,18 @@ work:
      :: holds -> goto work
      :: else -> goto idle
      fi
+  :: atomic { !kept -> kept = true;      /* decide_checkpoint; it may come long after the lease */
+       if
+#ifdef NO_CHECKPOINT_FENCE
+       :: state == running ->
+#else
+       :: state == running && token == my_token ->
+#endif
+         assert(my_attempt == attempt);
+         checkpoint = true
+       :: else -> skip                 /* ABORTED: its heartbeat will hear of it */
+       fi }
+     goto work
   :: goto idle             /* crashes; the one that comes after it knows nothing of the job */
   :: atomic { nfull(network) ->
        if
@@ -263,5 +282,5 @@ active proctype ServerCrash() {
 }
 
 ltl safe { [] ((acknowledged -> state != absent) && jobs_made <= 1 && (ended_as != absent -> state == ended_as) &&
-               !(cancel_requested && state == queued)) }
+               !(cancel_requested && state == queued) && (ended_as != absent -> !checkpoint)) }
 ltl ends { [] (acknowledged -> <> ended(state)) }

@@ -105,6 +105,7 @@ Result<v1::JobProgress> read_progress(const json& object) {
   v1::JobProgress out;
   out.set_printer_id(in.text("printer", kMaxNameBytes));
   out.set_stage(in.text("stage", kMaxNameBytes));
+  out.set_note(in.text("note", kMaxNoteBytes));
   out.set_iteration(in.count("iteration").value_or(0));
   if (const auto v = in.number("frame_volume_mm3")) out.set_frame_volume_mm3(*v);
   if (const auto v = in.number("skin_volume_mm3")) out.set_skin_volume_mm3(*v);
@@ -205,7 +206,13 @@ Result<JobLine> parse_event_line(std::string_view line) {
   if (!event.is_object()) return invalid_input("an event line is not a JSON object");
   if (const auto it = event.find("progress"); it != event.end()) return as_line(read_progress(*it));
   if (const auto it = event.find("printer"); it != event.end()) return as_line(read_printer(*it));
-  return invalid_input("an event line tells neither progress nor a printer");
+  if (const auto it = event.find("checkpoint"); it != event.end()) {
+    ObjectReader in(*it, "checkpoint");
+    CheckpointReady ready{in.text("stage", kMaxNameBytes)};
+    if (!in.error().empty()) return invalid_input(in.error());
+    return JobLine(std::move(ready));
+  }
+  return invalid_input("an event line tells neither progress nor a printer nor a checkpoint");
 }
 
 Result<Outcome> parse_outcome(std::string_view text) {

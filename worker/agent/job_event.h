@@ -16,8 +16,14 @@
 namespace skinframe::agent {
 
 inline constexpr std::size_t kMaxDetailBytes = 4096;  // longer texts are cut
+inline constexpr std::size_t kMaxNoteBytes = 512;     // likewise
 
-using JobLine = std::variant<v1::JobProgress, v1::PrinterResult>;
+// WORKDIR/checkpoint is new, with this stage finished.
+struct CheckpointReady {
+  std::string stage;
+};
+
+using JobLine = std::variant<v1::JobProgress, v1::PrinterResult, CheckpointReady>;
 
 // One line of the job's stdout. What the line leaves out stays absent.
 Result<JobLine> parse_event_line(std::string_view line);

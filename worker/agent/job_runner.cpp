@@ -15,6 +15,7 @@
 #include "worker/agent/artifact_transfer.h"
 #include "worker/agent/assignment.h"
 #include "worker/agent/backoff.h"
+#include "worker/agent/checkpoint_sender.h"
 #include "worker/agent/conclusion.h"
 #include "worker/agent/heartbeater.h"
 #include "worker/agent/supervise.h"
@@ -102,6 +103,7 @@ class Attempt {
   std::optional<Conclusion> prepare(const fs::path& folder) {
     std::map<std::string, fs::path> warm_start_files;
     if (auto wrong = fetch_warm_start(folder / "warm-start", warm_start_files)) return wrong;
+    if (auto wrong = fetch_checkpoint(folder / "resume")) return wrong;
     const bool is_mesh = assignment_.spec().has_mesh_sha256();
     const fs::path input = folder / (is_mesh ? "mesh" : "problem.json");
     const auto request = job_request_json(assignment_, input, warm_start_files, options_.threads_per_job);
@@ -142,6 +144,27 @@ class Attempt {
     return std::nullopt;
   }
 
+  // One that is gone or damaged is done without, and said so.
+  std::optional<Conclusion> fetch_checkpoint(const fs::path& path) {
+    if (!assignment_.has_checkpoint()) return std::nullopt;
+    const grpc::Status fetched = download_artifact(stubs_.artifacts, assignment_.checkpoint().sha256(), path,
+                                                   heartbeater_.stop_token(), proof());
+    if (fetched.ok()) return std::nullopt;
+    std::error_code error;
+    fs::remove(path, error);
+    if (heartbeater_.cause() != StopCause::kNone)
+      return transfer_failed("the checkpoint could not be fetched", fetched);
+    v1::JobProgress note;
+    note.set_stage("read");
+    note.set_attempt(assignment_.attempt());
+    note.set_note(
+        "the checkpoint of an earlier attempt is not used: it could not be fetched; starting from the "
+        "beginning");
+    heartbeater_.add(std::move(note));
+    spdlog::warn("job={} the checkpoint could not be fetched: {}", id(), fetched.error_message());
+    return std::nullopt;
+  }
+
   AttemptEnd run_process(const fs::path& folder) {
     AttemptEnd end;
     end.memory_limit_mb = options_.memory_limit_mb;
@@ -157,10 +180,11 @@ class Attempt {
       end.outcome_error = child.error().message;
       return end;
     }
+    CheckpointSender checkpoints(stubs_, assignment_, folder);
     std::deque<std::string> last_lines;
     SuperviseOptions supervision;
     supervision.stop = heartbeater_.stop_token();
-    supervision.on_stdout_line = [&](std::string_view line) { hear(line); };
+    supervision.on_stdout_line = [&](std::string_view line) { hear(line, checkpoints); };
     supervision.on_stderr_line = [&](std::string_view line) {
       spdlog::info("job={} | {}", id(), line);
       last_lines.emplace_back(line.substr(0, kLastLogLineBytes));
@@ -188,13 +212,15 @@ class Attempt {
     return text;
   }
 
-  void hear(std::string_view line) {
+  void hear(std::string_view line, CheckpointSender& checkpoints) {
     auto event = parse_event_line(line);
     if (!event) {
       spdlog::warn("job={} event line dropped: {}", id(), event.error().message);
     } else if (auto* progress = std::get_if<v1::JobProgress>(&event.value())) {
       progress->set_attempt(assignment_.attempt());
       heartbeater_.add(std::move(*progress));
+    } else if (auto* ready = std::get_if<CheckpointReady>(&event.value())) {
+      checkpoints.ready(std::move(ready->stage));
     } else {
       heartbeater_.add(std::get<v1::PrinterResult>(std::move(event).value()));
     }

@@ -8,12 +8,13 @@ namespace skinframe::agent {
 
 void ProgressBatch::add(v1::JobProgress progress) {
   last_ = progress;
+  last_->clear_note();
   // The newest of this printer: others may run beside it.
   const auto same = std::find_if(progress_.rbegin(), progress_.rend(), [&](const v1::JobProgress& told) {
     return told.printer_id() == progress.printer_id();
   });
-  if (same != progress_.rend() && same->stage() == progress.stage() &&
-      same->iteration() == progress.iteration()) {
+  if (same != progress_.rend() && same->note().empty() && progress.note().empty() &&
+      same->stage() == progress.stage() && same->iteration() == progress.iteration()) {
     *same = std::move(progress);
   } else {
     progress_.push_back(std::move(progress));

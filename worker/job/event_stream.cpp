@@ -103,6 +103,18 @@ void EventStream::printer_ended(const PrinterOutcome& outcome) {
   write_line({{"printer", outcome_json(outcome)}});
 }
 
+void EventStream::note(const std::string& text) {
+  const std::scoped_lock lock(mutex_);
+  json line = {{"stage", to_string(last_ ? last_->progress.stage : Stage::kRead)}, {"note", text}};
+  if (last_ && !last_->printer.empty()) line["printer"] = last_->printer;
+  write_line({{"progress", std::move(line)}});
+}
+
+void EventStream::checkpoint(const std::string& stage) {
+  const std::scoped_lock lock(mutex_);
+  write_line({{"checkpoint", {{"stage", stage}}}});
+}
+
 void EventStream::write_line(const json& line) {
   // A reader that is gone is the agent's death; the parent-death signal ends this process.
   const std::string text = line.dump(-1, ' ', false, json::error_handler_t::replace) + "\n";

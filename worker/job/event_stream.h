@@ -34,6 +34,8 @@ class EventStream {
 
   void progress(const PipelineProgress& progress);
   void printer_ended(const PrinterOutcome& outcome);
+  void note(const std::string& text);         // a sentence for people, beside the present stage
+  void checkpoint(const std::string& stage);  // WORKDIR/checkpoint is new
 
  private:
   using Clock = std::chrono::steady_clock;

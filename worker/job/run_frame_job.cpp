@@ -46,7 +46,7 @@ json failed_outcome(Reason reason, const std::string& detail) {
 }
 
 json run_frame_job(const JobFile& file, const std::filesystem::path& out_dir, EventStream& events,
-                   const RunContext& shared) {
+                   Checkpoints* checkpoints, const RunContext& shared) {
   const auto failed = [](const Error& error) { return failed_outcome(reason_of(error.kind), error.message); };
   RunContext context = shared;
   context.report = [&](const Progress& progress) { events.progress({"", progress, {}, {}}); };
@@ -57,7 +57,9 @@ json run_frame_job(const JobFile& file, const std::filesystem::path& out_dir, Ev
   if (!problem) return failed(problem.error());
   context.report(
       {.stage = Stage::kSize, .struts_left = static_cast<int>(problem->problem.frame.struts.size())});
-  const auto optimised = optimize_frame(problem->problem, problem->options, context);
+  OptimizeOptions options = problem->options;
+  options.checkpoints = checkpoints;
+  const auto optimised = optimize_frame(problem->problem, options, context);
   if (!optimised) return failed(optimised.error());
 
   const OptimizeResult& result = *optimised;

@@ -23,6 +23,6 @@ nlohmann::json failed_outcome(Reason reason, const std::string& detail);
 
 // outcome.json. file.frame_problem is there.
 nlohmann::json run_frame_job(const JobFile& file, const std::filesystem::path& out_dir, EventStream& events,
-                             const RunContext& shared);
+                             Checkpoints* checkpoints, const RunContext& shared);
 
 }  // namespace skinframe

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <new>
 
+#include "worker/job/checkpoint_file.h"
 #include "worker/job/event_stream.h"
 #include "worker/job/read_job.h"
 #include "worker/job/run_frame_job.h"
@@ -37,17 +38,20 @@ json outcome_of(const std::vector<PrinterOutcome>& printers) {
   return out;
 }
 
-json work(const JobFile& file, const std::filesystem::path& out_dir, std::stop_token stop) {
+json work(const JobFile& file, const std::filesystem::path& work_dir, std::stop_token stop) {
+  const auto out_dir = work_dir / "out";
   RunContext context;
   context.stop = stop;
   context.seed = file.request.options.seed;
   context.threads = file.threads;
   EventStream events(stdout, file.frame_problem ? TimeLeft::kUnknown : TimeLeft::kEstimated);
+  CheckpointFile checkpoints(work_dir, file.request.job_id, events);
   PipelineObserver observer;
+  observer.checkpoints = &checkpoints;
   observer.progress = [&](const PipelineProgress& progress) { events.progress(progress); };
   observer.printer_ended = [&](const PrinterOutcome& outcome) { events.printer_ended(outcome); };
   try {
-    if (file.frame_problem) return run_frame_job(file, out_dir, events, context);
+    if (file.frame_problem) return run_frame_job(file, out_dir, events, &checkpoints, context);
     auto outcomes = run_pipeline(file.request, out_dir, observer, context);
     if (!outcomes) return failed_outcome(reason_of(outcomes.error().kind), outcomes.error().message);
     return outcome_of(*outcomes);
@@ -77,7 +81,7 @@ int run_job(const std::filesystem::path& work_dir) {
       spdlog::info("job={} mesh={} printers={}", file->request.job_id, file->request.mesh_name,
                    file->request.printers.size());
     }
-    outcome = work(*file, work_dir / "out", stop.token());
+    outcome = work(*file, work_dir, stop.token());
     spdlog::info("job={} ended state={} reason={}", file->request.job_id, outcome["state"].get<std::string>(),
                  outcome["reason"].get<std::string>());
   }

@@ -8,6 +8,7 @@
 #include <exception>
 #include <new>
 
+#include "worker/optimize/algorithm_state.h"
 #include "worker/optimize/block_ldlt.h"
 #include "worker/optimize/design.h"
 #include "worker/optimize/geometry_stage.h"
@@ -73,15 +74,23 @@ namespace {
 class Algorithm {
  public:
   Algorithm(const FrameProblem& problem, const OptimizeOptions& options, RunContext& context)
-      : options_(options), session_(options, context), design_(initial_design(problem)) {
+      : options_(options),
+        given_(problem),
+        checkpoints_(options.checkpoints),
+        key_(checkpoints_ != nullptr ? algorithm_key(problem, options) : ""),
+        session_(options, context),
+        design_(initial_design(problem)) {
     ProgramRequest bounds;
     set_size_bounds(problem, bounds);
     result_.initial = record_of(problem, frame_volume_mm3(problem.frame, radii_of(bounds.lower_mm2)));
   }
 
   Result<OptimizeResult> run() {
-    size();
-    if (session_.cancelled()) return cancelled_error();
+    if (!go_on()) {
+      size();
+      if (session_.cancelled()) return cancelled_error();
+      if (design_.reason != Termination::kInfeasible) keep(Stage::kSize);
+    }
     if (design_.reason != Termination::kInfeasible) reduce();
     if (session_.cancelled()) return cancelled_error();
     return finish();
@@ -151,35 +160,77 @@ class Algorithm {
     const bool topology =
         options_.topology || (options_.relaxed && options_.order == OptimizeOptions::Order::kTight);
     if (!topology && !options_.geometry) return;
-    const Design sized = design_;
-    bool settled = false;
-    for (int round = 0; round < options_.max_outer_iterations; ++round) {
-      const double before = design_.volume_mm3;
-      const std::size_t struts = design_.problem.frame.struts.size();
-      if (topology)
-        timed("topology", Stage::kTopology, [&] {
-          design_ = optimise_topology(std::move(design_), round > 0 || !options_.geometry, session_);
-        });
+    while (!loop_.ended && loop_.round < options_.max_outer_iterations) {
+      if (!loop_.after_topology) topology_half(topology);
       if (session_.cancelled()) return;
-      if (round == 0) {
-        result_.topology = record_of(design_.problem, design_.volume_mm3);
-        if (topology) bound_removal(sized);
-      }
-      if (round > 0 && settled && design_.problem.frame.struts.size() == struts)
+      if (loop_.round > 0 && loop_.settled &&
+          static_cast<int>(design_.problem.frame.struts.size()) == loop_.struts_before)
         return;  // geometry has already had this frame
-      // Once geometry has settled, what topology changed has to be worth another pass.
-      const bool changed = design_.volume_mm3 <= (1 - options_.geometry_decrease) * before;
-      if (options_.geometry && (round == 0 || changed || !settled))
-        timed("geometry", Stage::kGeometry, [&] {
-          GeometryOutcome outcome = optimise_geometry(std::move(design_), session_);
-          design_ = std::move(outcome.design);
-          settled = outcome.settled;
-        });
+      geometry_half();
       if (session_.cancelled()) return;
-      result_.geometry = record_of(design_.problem, design_.volume_mm3);
-      result_.outer_iterations = round + 1;
-      if (design_.volume_mm3 > (1 - options_.outer_decrease) * before) return;
+      loop_.after_topology = false;
+      loop_.ended = design_.volume_mm3 > (1 - options_.outer_decrease) * loop_.volume_before_mm3;
+      ++loop_.round;
+      keep(Stage::kGeometry);
     }
+  }
+
+  void topology_half(bool wanted) {
+    loop_.volume_before_mm3 = design_.volume_mm3;
+    loop_.struts_before = static_cast<int>(design_.problem.frame.struts.size());
+    const bool first = loop_.round == 0;
+    const Design before = first ? design_ : Design();
+    if (wanted)
+      timed("topology", Stage::kTopology,
+            [&] { design_ = optimise_topology(std::move(design_), !first || !options_.geometry, session_); });
+    if (session_.cancelled()) return;
+    if (first) {
+      result_.topology = record_of(design_.problem, design_.volume_mm3);
+      if (wanted) bound_removal(before);
+      if (session_.cancelled()) return;
+    }
+    loop_.after_topology = true;
+    if (wanted) keep(Stage::kTopology);
+  }
+
+  void geometry_half() {
+    // Once geometry has settled, what topology changed has to be worth another pass.
+    const bool changed = design_.volume_mm3 <= (1 - options_.geometry_decrease) * loop_.volume_before_mm3;
+    if (options_.geometry && (loop_.round == 0 || changed || !loop_.settled))
+      timed("geometry", Stage::kGeometry, [&] {
+        GeometryOutcome outcome = optimise_geometry(std::move(design_), session_);
+        design_ = std::move(outcome.design);
+        loop_.settled = outcome.settled;
+      });
+    if (session_.cancelled()) return;
+    result_.geometry = record_of(design_.problem, design_.volume_mm3);
+    result_.outer_iterations = loop_.round + 1;
+  }
+
+  void keep(Stage finished) {
+    if (checkpoints_ == nullptr || session_.cancelled()) return;
+    AlgorithmState state{loop_, design_, session_.state(), result_};
+    checkpoints_->keep(key_, to_string(finished), to_bytes(state));
+  }
+
+  // From where an earlier attempt was broken off. False: from the beginning.
+  bool go_on() {
+    const auto bytes = checkpoints_ != nullptr ? checkpoints_->find(key_) : std::nullopt;
+    if (!bytes) return false;
+    auto state = algorithm_state(*bytes, given_);
+    if (!state) {
+      checkpoints_->refused("the optimiser's state is damaged");
+      return false;
+    }
+    loop_ = state->loop;
+    design_ = std::move(state->design);
+    session_.state() = std::move(state->session);
+    result_ = std::move(state->so_far);
+    const bool sized_only = loop_.round == 0 && !loop_.after_topology;
+    checkpoints_->used(to_string(sized_only             ? Stage::kSize
+                                 : loop_.after_topology ? Stage::kTopology
+                                                        : Stage::kGeometry));
+    return true;
   }
 
   OptimizeResult finish() {
@@ -210,8 +261,12 @@ class Algorithm {
   }
 
   const OptimizeOptions& options_;
+  const FrameProblem& given_;
+  Checkpoints* const checkpoints_;
+  const std::string key_;
   Session session_;
   Design design_;
+  OuterLoop loop_;
   OptimizeResult result_;
 };
 

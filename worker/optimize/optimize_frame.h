@@ -21,6 +21,7 @@
 #include "worker/mechanics/evaluation.h"
 #include "worker/mechanics/frame_problem.h"
 #include "worker/optimize/infeasibility_certificate.h"
+#include "worker/run/checkpoints.h"
 #include "worker/run/result.h"
 #include "worker/run/run_context.h"
 
@@ -54,6 +55,10 @@ struct OptimizeOptions {
   // Radii near the optimum, one a strut of the problem, where the first sizing starts; empty: none are known.
   // They change the way and not the optimum, within the tolerances below; poor ones are not used.
   std::vector<double> hint_radii_mm;
+
+  // Where the stages are kept and an earlier attempt is gone on from; it changes nothing in the result. Null:
+  // nowhere.
+  Checkpoints* checkpoints = nullptr;
 
   // Interior point: scaled Karush-Kuhn-Tucker error <= kkt_tolerance (nondimensional problem), range (0,
   // 1e-3].

@@ -20,8 +20,8 @@ ProgramOutcome Session::solve(const FrameProblem& problem, ProgramRequest reques
                               std::function<bool(const ProgramVector&, const KktError&)> good_enough) {
   const int struts = static_cast<int>(problem.frame.struts.size());
   const bool least_volume = request.elastic == ElasticScope::kNone && !request.volume_cap_mm3;
-  if (least_volume && request.warm.empty() && offered_.fits(problem.frame.nodes_mm.size())) {
-    request.warm = offered_;
+  if (least_volume && request.warm.empty() && state_.offered.fits(problem.frame.nodes_mm.size())) {
+    request.warm = state_.offered;
     request.initial_barrier = std::min(request.initial_barrier, kWarmBarrier);
   }
   InteriorPointOptions options;
@@ -43,10 +43,11 @@ ProgramOutcome Session::solve(const FrameProblem& problem, ProgramRequest reques
   };
   options.cancelled = [&] { return context_.cancelled(); };
   options.team = team_;
-  if (least_volume && most_mm3_)
+  if (least_volume && state_.most_mm3)
     options.good_enough = [&](const ProgramVector& point, const KktError& error) {
       return error.primal <= kNearPrimal && error.dual <= kNearDual &&
-             scaled.volume_mm3(program_volume(scaled.program(), point) - scaled.gap(error)) > *most_mm3_;
+             scaled.volume_mm3(program_volume(scaled.program(), point) - scaled.gap(error)) >
+                 *state_.most_mm3;
     };
   if (good_enough) options.good_enough = std::move(good_enough);
   options.start_duals = scaled.start_duals();
@@ -54,14 +55,14 @@ ProgramOutcome Session::solve(const FrameProblem& problem, ProgramRequest reques
 
   const auto began = std::chrono::steady_clock::now();
   const InteriorPointResult result = solve_program(scaled.program(), scaled.start(), options);
-  effort_.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-  effort_.iterations += result.iterations;
-  effort_.factorisations += result.factorisations;
+  state_.effort.seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  state_.effort.iterations += result.iterations;
+  state_.effort.factorisations += result.factorisations;
   ProgramOutcome outcome{
       result.end,           scaled.areas_mm2(result.point), scaled.positions_mm(result.point),
       result.point.elastic, result.error.worst(),           {}};
   if (least_volume && outcome.converged())
-    latest_ = outcome.warm = scaled.warm_start(result.point, result.duals);
+    state_.latest = outcome.warm = scaled.warm_start(result.point, result.duals);
   return outcome;
 }
 

@@ -31,6 +31,13 @@ struct ProgramOutcome {
   bool converged() const { return end == InteriorPointEnd::kOptimal || end == InteriorPointEnd::kAcceptable; }
 };
 
+// All that one program leaves to the next within a session.
+struct SessionState {
+  SolverEffort effort;
+  WarmStart offered, latest;
+  std::optional<double> most_mm3;
+};
+
 class Session {
  public:
   Session(const OptimizeOptions& options, RunContext& context)
@@ -38,15 +45,18 @@ class Session {
 
   const OptimizeOptions& options() const { return options_; }
   bool cancelled() const { return context_.cancelled(); }
-  const SolverEffort& effort() const { return effort_; }
+  const SolverEffort& effort() const { return state_.effort; }
   void enter(Stage stage) { stage_ = stage, stage_iteration_ = 0; }
 
   // The duals that programs of least volume start from, as long as the count of nodes fits; empty: none.
-  void offer(WarmStart warm) { offered_ = std::move(warm); }
+  void offer(WarmStart warm) { state_.offered = std::move(warm); }
   // Programs of least volume stop as soon as their optimum is sure to lie above this; none: they run on.
-  void give_up_above(std::optional<double> volume_mm3) { most_mm3_ = volume_mm3; }
+  void give_up_above(std::optional<double> volume_mm3) { state_.most_mm3 = volume_mm3; }
   // Of the last program of least volume that converged.
-  const WarmStart& latest() const { return latest_; }
+  const WarmStart& latest() const { return state_.latest; }
+
+  // For checkpoints.
+  SessionState& state() { return state_; }
 
   // Builds the program, runs the interior point, reports progress at each of its iterations. `good_enough`:
   // see there.
@@ -60,9 +70,7 @@ class Session {
   std::shared_ptr<ThreadTeam> team_;
   Stage stage_ = Stage::kSize;
   int stage_iteration_ = 0;
-  SolverEffort effort_;
-  WarmStart offered_, latest_;
-  std::optional<double> most_mm3_;
+  SessionState state_;
 };
 
 }  // namespace skinframe

@@ -11,6 +11,7 @@
 #include "worker/pipeline/make_solid.h"
 #include "worker/pipeline/pose_problem.h"
 #include "worker/pipeline/sample_by_stress.h"
+#include "worker/pipeline/sampling_checkpoint.h"
 #include "worker/pipeline/solve_and_merge.h"
 #include "worker/pipeline/support_print.h"
 #include "worker/pipeline/write_json.h"
@@ -92,8 +93,12 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
     report.warm_start = WarmStartReport{job.warm_start->job_id, {}, {}};
     earlier = find_earlier_frame(*job.warm_start, printer.id, key, *skin, asked, &*report.warm_start);
   }
-  auto sampled = earlier ? sample_again(*earlier, &report)
-                         : sample_by_stress(prepared, *skin, request, job, laps, &report, context);
+  auto sampled =
+      earlier ? sample_again(*earlier, &report)
+              : sample_or_go_on(
+                    fmt::format("sample/{}/{}", printer.id, key),
+                    [&] { return sample_by_stress(prepared, *skin, request, job, laps, &report, context); },
+                    &report, observer.checkpoints);
   if (!sampled) return sampled.error();
 
   const BalanceState balance = decide_balance(job.options.balance, prepared.contact);
@@ -113,7 +118,8 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
                     "balance is not enforced (see --up and --balance)",
                     -prepared.contact.margin_mm));
 
-  SolveSetting setting{prepared, *skin, printer, job.options, balance, laps, std::nullopt};
+  SolveSetting setting{prepared, *skin, printer,      job.options,
+                       balance,  laps,  std::nullopt, observer.checkpoints};
   if (earlier && earlier->reduced && !job.options.no_optimize) {
     SampledFrame reduced = *sampled;
     reduced.frame = earlier->reduced->frame;

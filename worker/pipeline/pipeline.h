@@ -21,6 +21,7 @@
 
 #include "worker/pipeline/request.h"
 #include "worker/report/report.h"
+#include "worker/run/checkpoints.h"
 #include "worker/run/run_context.h"
 
 namespace skinframe {
@@ -44,6 +45,7 @@ struct PipelineProgress {
 struct PipelineObserver {
   std::function<void(const PipelineProgress&)> progress = [](const PipelineProgress&) {};
   std::function<void(const PrinterOutcome&)> printer_ended = [](const PrinterOutcome&) {};
+  Checkpoints* checkpoints = nullptr;  // none: every stage begins at its beginning
 };
 
 // One outcome a printer, in the request's order. Errors: what concerns all printers alike (the mesh, the

@@ -38,6 +38,7 @@ class PrinterRun {
         context_(context),
         forward_stop_(context.stop, [this] { stop_.request_stop(); }),
         reports_(request.printers.size()) {
+    told_.checkpoints = observer.checkpoints;
     told_.progress = [this](const PipelineProgress& progress) {
       const std::scoped_lock lock(observer_mutex_);
       observer_.progress(progress);

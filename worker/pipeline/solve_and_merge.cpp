@@ -99,7 +99,8 @@ Status solve_frame(const FrameProblem& problem, const SolveSetting& setting, Pri
   }
   context.report({.stage = Stage::kSize, .struts_left = static_cast<int>(problem.frame.struts.size())});
   if (context.cancelled()) return cancelled_error();
-  const OptimizeOptions how = optimize_options(options, setting.skin);
+  OptimizeOptions how = optimize_options(options, setting.skin);
+  how.checkpoints = setting.checkpoints;
   auto optimised = [&] {
     if (!setting.start) return optimize_frame(problem, how, context);
     FrameProblem reduced = setting.start->problem;

@@ -31,6 +31,7 @@ struct SolveSetting {
   BalanceState balance;
   Laps& laps;
   std::optional<ReducedStart> start;
+  Checkpoints* checkpoints = nullptr;
 };
 
 // Fills the report's optimised frame, supports, statistics, termination and reason. No mesh when the job is

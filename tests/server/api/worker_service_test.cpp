@@ -70,6 +70,47 @@ TEST_F(WorkerServiceTest, AFramesResultIsKeptAndOnlyAFrameProblemHasOne) {
   EXPECT_EQ(kept.reason(), v1::REASON_INFEASIBLE);
 }
 
+TEST_F(WorkerServiceTest, ACheckpointIsHandedToTheNextAttemptUnlessItIsStaleOrNotThere) {
+  const std::string id = submit();
+  const v1::Assignment first = lease();
+  EXPECT_FALSE(first.has_checkpoint());
+  v1::CheckpointRequest request;
+  request.set_job_id(id);
+  request.set_fencing_token(first.fencing_token());
+  request.mutable_checkpoint()->set_sha256(put("state"));
+  request.mutable_checkpoint()->set_size_bytes(5);
+  request.mutable_checkpoint()->set_stage("sample");
+  const auto send = [&](const v1::CheckpointRequest& what) {
+    grpc::ClientContext context;
+    set_deadline(context);
+    v1::CheckpointResponse response;
+    return workers_->Checkpoint(&context, what, &response).error_code();
+  };
+  EXPECT_EQ(send(request), grpc::StatusCode::OK);
+  const v1::CheckpointRequest good = request;
+  request.mutable_checkpoint()->set_sha256(std::string(64, 'b'));
+  EXPECT_EQ(send(request), grpc::StatusCode::FAILED_PRECONDITION);
+  request.mutable_checkpoint()->set_sha256("no hash");
+  EXPECT_EQ(send(request), grpc::StatusCode::INVALID_ARGUMENT);
+  request = good;
+  request.mutable_checkpoint()->set_size_bytes((std::int64_t{64} << 20) + 1);
+  EXPECT_EQ(send(request), grpc::StatusCode::INVALID_ARGUMENT);
+  request = good;
+  request.set_fencing_token(first.fencing_token() + 1);
+  EXPECT_EQ(send(request), grpc::StatusCode::ABORTED);
+  request.set_job_id("none");
+  EXPECT_EQ(send(request), grpc::StatusCode::ABORTED);
+
+  ASSERT_TRUE(complete(outcome(first, v1::JOB_STATE_CANCELLED)).ok());  // its worker stops
+  EXPECT_EQ(send(good), grpc::StatusCode::ABORTED);
+  const v1::Assignment second = lease();
+  EXPECT_EQ(second.checkpoint().sha256(), good.checkpoint().sha256());
+  EXPECT_EQ(second.checkpoint().stage(), "sample");
+  EXPECT_EQ(second.checkpoint().attempt(), 1);
+  ASSERT_TRUE(complete(outcome(second, v1::JOB_STATE_SUCCEEDED)).ok());
+  EXPECT_FALSE(job(id).has_checkpoint());
+}
+
 TEST_F(WorkerServiceTest, NothingToDoIsAnEmptyAnswer) {
   v1::LeaseRequest request = long_poll();
   request.clear_wait();

@@ -147,6 +147,41 @@ TEST(Heartbeat, PrinterResultBecomesAnEventOnceAndUpdatesTheJob) {
   EXPECT_EQ(after(again).job.printers_size(), 1);
 }
 
+v1::CheckpointRequest checkpoint(std::int64_t token, const std::string& sha256) {
+  v1::CheckpointRequest request;
+  request.set_job_id("job");
+  request.set_fencing_token(token);
+  request.mutable_checkpoint()->set_sha256(sha256);
+  request.mutable_checkpoint()->set_attempt(99);  // the server knows better
+  return request;
+}
+
+TEST(Checkpoint, IsKeptOverALostAttemptAndGoesWithTheEnd) {
+  const JobRecord kept = after(decide_checkpoint(running(), checkpoint(7, "one")));
+  EXPECT_EQ(kept.job.checkpoint().attempt(), 1);
+  EXPECT_FALSE(decide_checkpoint(kept, checkpoint(7, "one"))->has_value());
+  const JobRecord expired = after(decide_lease_expired(kept, kNoon + kPolicy.lease, kPolicy));
+  EXPECT_EQ(expired.job.checkpoint().sha256(), "one");
+  const auto handed_back = completion("job", 7, v1::JOB_STATE_CANCELLED);
+  EXPECT_TRUE(after(decide_complete(kept, handed_back, kNoon, kPolicy)).job.has_checkpoint());
+  const auto done = completion("job", 7, v1::JOB_STATE_SUCCEEDED);
+  EXPECT_FALSE(after(decide_complete(kept, done, kNoon, kPolicy)).job.has_checkpoint());
+  EXPECT_FALSE(after(decide_cancel(expired, kNoon, kPolicy)).job.has_checkpoint());
+}
+
+TEST(Checkpoint, OfAStaleTokenIsAborted) {
+  EXPECT_TRUE(absl::IsAborted(decide_checkpoint(running(7), checkpoint(6, "late")).status()));
+  EXPECT_TRUE(absl::IsAborted(decide_checkpoint(queued(), checkpoint(7, "late")).status()));
+}
+
+TEST(Checkpoint, AProcessThatDiesOfItIsNotGivenItAgain) {
+  const JobRecord kept = after(decide_checkpoint(running(), checkpoint(7, "one")));
+  const JobRecord first = after(decide_complete(kept, crash(), kNoon, kPolicy));
+  EXPECT_TRUE(first.job.has_checkpoint()) << "it made it, so it got further than its beginning";
+  const JobRecord again = leased(first, 8).record;
+  EXPECT_FALSE(after(decide_complete(again, crash(8), kNoon, kPolicy)).job.has_checkpoint());
+}
+
 TEST(Complete, SucceedsWithFilesAndTellsPrintersBeforeTheState) {
   auto request = completion("job", 7, v1::JOB_STATE_SUCCEEDED, v1::REASON_PARTIAL);
   request.add_printers()->set_printer_id("p");

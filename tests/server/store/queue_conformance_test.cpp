@@ -118,6 +118,44 @@ TEST_P(JobStoreConformance, FencingTokensRiseOverDeletionAndReopening) {
   EXPECT_GT(second->lease.fencing_token, first->lease.fencing_token);
 }
 
+TEST_P(JobStoreConformance, ACheckpointOutlivesItsAttemptAndAStaleOneIsRefused) {
+  create("a");
+  const auto put = [&](std::int64_t token, const std::string& sha256) {
+    v1::CheckpointRequest request;
+    request.set_fencing_token(token);
+    request.mutable_checkpoint()->set_sha256(sha256);
+    return store_->modify("a", [&](const JobRecord& job) { return decide_checkpoint(job, request); })
+        .status();
+  };
+  const auto first = lease();
+  ASSERT_TRUE(put(first->lease.fencing_token, "one").ok());
+  const Time expiry = kNoon + kPolicy.lease;
+  ASSERT_TRUE(
+      store_->modify("a", [&](const JobRecord& job) { return decide_lease_expired(job, expiry, kPolicy); })
+          .ok());
+  EXPECT_TRUE(absl::IsAborted(put(first->lease.fencing_token, "late")));
+  reopen();
+  const auto second = lease(store_->get("a")->not_before);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->job.checkpoint().sha256(), "one");
+  EXPECT_EQ(second->job.checkpoint().attempt(), 1);
+  EXPECT_TRUE(absl::IsAborted(put(first->lease.fencing_token, "late")));
+  ASSERT_TRUE(put(second->lease.fencing_token, "two").ok());
+  EXPECT_EQ(store_->get("a")->job.checkpoint().attempt(), 2);
+  const auto page = store_->list({});
+  EXPECT_EQ(page->entries.at(0).job.checkpoint().sha256(), "two") << "the cleaner reads what is listed";
+  ASSERT_TRUE(store_
+                  ->modify("a",
+                           [&](const JobRecord& job) {
+                             return decide_complete(
+                                 job, completion("a", second->lease.fencing_token, v1::JOB_STATE_SUCCEEDED),
+                                 kNoon, kPolicy);
+                           })
+                  .ok());
+  EXPECT_FALSE(store_->get("a")->job.has_checkpoint());
+  EXPECT_TRUE(absl::IsAborted(put(second->lease.fencing_token, "after the end")));
+}
+
 TEST_P(JobStoreConformance, ConcurrentLeasesNeverGiveOneJobTwice) {
   constexpr int kJobs = 40;
   for (int i = 0; i < kJobs; ++i) create("job-" + std::to_string(i));

@@ -31,6 +31,7 @@ class FakeWorkerService final : public v1::WorkerService::Service {
   int asked = 0;
   std::vector<v1::HeartbeatRequest> heartbeats;
   std::vector<v1::CompleteRequest> completions;
+  std::vector<v1::CheckpointRequest> checkpoints;
   bool cancel = false;
   bool take_lease_away = false;
   int refuse_completions = 0;
@@ -62,6 +63,14 @@ class FakeWorkerService final : public v1::WorkerService::Service {
     if (take_lease_away) return {grpc::StatusCode::ABORTED, "another worker has the job"};
     response->set_cancel(cancel);
     *response->mutable_lease_left() = TimeUtil::SecondsToDuration(10);
+    return grpc::Status::OK;
+  }
+
+  grpc::Status Checkpoint(grpc::ServerContext*, const v1::CheckpointRequest* request,
+                          v1::CheckpointResponse*) override {
+    const std::lock_guard lock(mutex);
+    checkpoints.push_back(*request);
+    changed.notify_all();
     return grpc::Status::OK;
   }
 
@@ -121,6 +130,7 @@ class AgentTest : public testing::Test {
     a.mutable_spec()->add_printers();
     a.add_printers()->set_process(v1::PRINT_PROCESS_POWDER);
     a.add_materials();
+    if (!checkpoint_.empty()) a.mutable_checkpoint()->set_sha256(checkpoint_);
     *a.mutable_heartbeat_interval() = TimeUtil::MillisecondsToDuration(heartbeat_ms);
     *a.mutable_lease_duration() = TimeUtil::SecondsToDuration(10);
     const std::lock_guard lock(workers_.mutex);
@@ -148,6 +158,7 @@ class AgentTest : public testing::Test {
   }();
   test::TemporaryFolder folder_;
   fake::FakeArtifacts artifacts_;
+  std::string checkpoint_;  // of the assignment
   FakeWorkerService workers_;
   AgentOptions options_;
   int port_ = 0;
@@ -181,6 +192,42 @@ TEST_F(AgentTest, AJobGoesFromLeaseToResult) {
   bool told = false;
   for (const auto& beat : workers_.heartbeats) told = told || beat.progress_size() > 0;
   EXPECT_TRUE(told) << "progress was lost";
+}
+
+TEST_F(AgentTest, ACheckpointGoesToTheServerWhileTheJobRuns) {
+  assign();
+  const auto go = (folder_.path() / "go").string();
+  start_agent(
+      "printf mesh > $2/checkpoint; echo '{\"checkpoint\": {\"stage\": \"size\"}}'\n"
+      "while [ ! -e " +
+      go + " ]; do :; done\n" + kGoodJob);
+  EXPECT_TRUE(wait_for([&] { return !workers_.checkpoints.empty(); }));
+  std::ofstream(go) << "go";
+  EXPECT_EQ(completion().state(), v1::JOB_STATE_SUCCEEDED);
+  const v1::CheckpointRequest& sent = workers_.checkpoints.at(0);
+  EXPECT_EQ(sent.fencing_token(), 7);
+  EXPECT_EQ(sent.checkpoint().sha256(), kMeshHash);
+  EXPECT_EQ(sent.checkpoint().size_bytes(), 4);
+  EXPECT_EQ(sent.checkpoint().stage(), "size");
+}
+
+TEST_F(AgentTest, TheCheckpointOfAnEarlierAttemptIsGivenToTheJob) {
+  checkpoint_ = kMeshHash;  // any artifact that is there
+  assign();
+  start_agent(std::string("[ \"$(cat $2/resume)\" = mesh ] || exit 8\n") + kGoodJob);
+  EXPECT_EQ(completion().state(), v1::JOB_STATE_SUCCEEDED);
+}
+
+TEST_F(AgentTest, ACheckpointThatIsGoneIsDoneWithoutAndSaidSo) {
+  checkpoint_ = std::string(64, 'c');
+  assign();
+  start_agent(std::string("[ ! -e $2/resume ] || exit 8\n") + kGoodJob);
+  EXPECT_EQ(completion().state(), v1::JOB_STATE_SUCCEEDED);
+  const std::lock_guard lock(workers_.mutex);
+  bool told = false;
+  for (const auto& beat : workers_.heartbeats)
+    for (const auto& progress : beat.progress()) told = told || !progress.note().empty();
+  EXPECT_TRUE(told);
 }
 
 TEST_F(AgentTest, NothingOfAJobStaysOnTheDisk) {

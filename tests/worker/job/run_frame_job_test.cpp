@@ -28,7 +28,7 @@ class FrameJob : public ::testing::Test {
     RunContext context;
     context.stop = stop;
     EventStream events(events_.get(), TimeLeft::kUnknown);
-    return run_frame_job(file, out(), events, context);
+    return run_frame_job(file, out(), events, nullptr, context);
   }
   std::filesystem::path out() const { return folder_.path() / "out"; }
   json read(const char* name) const { return json::parse(std::ifstream(out() / name)); }
