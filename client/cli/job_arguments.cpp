@@ -90,7 +90,10 @@ void add_job_options(CLI::App& verb, JobArguments& a) {
   verb.add_option("--skin-nodes", a.skin_nodes, "Nodes on the skin, 12 .. 20000");
   verb.add_option("--internal-nodes", a.internal_nodes, "Nodes inside, 0 .. 20000");
   verb.add_option("--voxel", a.voxel_mm, "Voxel of the final solid in mm, 0.02 .. 5");
-  verb.add_option("--smooth", a.smooth, "Smooth fine detail inside")->check(one_of(kSmooths));
+  verb.add_option(
+          "--smooth", a.smooth,
+          "Offset the cavity from a smooth copy: on, off, or auto where detail is finer than the skin")
+      ->check(one_of(kSmooths));
   verb.add_option("--orient", a.orient, "Keep the orientation or search the best")->check(one_of(kOrients));
   verb.add_flag("--no-optimize", a.no_optimize, "Radii stay at their lower bounds");
   verb.add_option("--order", a.order, "Order of the optimiser's stages")->check(one_of(kOrders));

@@ -27,10 +27,6 @@ absl::Status invalid(fmt::format_string<Args...> format, Args&&... args) {
   return absl::InvalidArgumentError(fmt::format(format, std::forward<Args>(args)...));
 }
 
-absl::Status not_built(std::string_view option) {
-  return absl::UnimplementedError(fmt::format("{} is not built in this version of skinframe", option));
-}
-
 bool made_of(std::string_view text, std::string_view extra, bool upper_case) {
   return std::all_of(text.begin(), text.end(), [&](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || (upper_case && c >= 'A' && c <= 'Z') ||
@@ -192,7 +188,6 @@ absl::Status check_options(const v1::JobOptions& o) {
   for (const absl::Status& status : all) {
     if (!status.ok()) return status;
   }
-  if (o.smooth() == v1::SMOOTH_ON) return not_built("options.smooth on");
   return absl::OkStatus();
 }
 

@@ -114,13 +114,6 @@ TEST_F(Answers, WrongOptionAndOptionOutOfRange) {
       2);
 }
 
-TEST_F(Answers, WhatIsNotBuiltIsRefusedByName) {
-  const Ran ran =
-      skinframe({"run", sample("egg"), "--printer", "sinterstation-hiq", "--smooth", "on", "--out", out()});
-  EXPECT_EQ(ran.exit_code, 2) << ran.err;
-  EXPECT_NE(ran.err.find("smooth"), std::string::npos) << ran.err;
-}
-
 TEST_F(Answers, ServerNotRunning) {
   expect_sentence(skinframe({"--server", "127.0.0.1:1", "list"}), 7, "127.0.0.1:1");
 }

@@ -33,6 +33,7 @@ Verdict judge(const ExportedPrinter& result) {
   claim_mesh(result, outer_mesh, cavity, outer, &verdict);
   claim_walls(result, &verdict);
   claim_crossings(result, &verdict);
+  claim_smoothing(result, outer_mesh, cavity, outer, &verdict);
   claim_package(result, &verdict);
   claim_beams(result, &verdict);
   claim_compact(result, &verdict);

@@ -16,6 +16,12 @@ void split_surfaces(const ExportedPrinter& result, TriangleMesh* outer, Triangle
 void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, const TriangleMesh& cavity,
                 const Surface& outer, Verdict* verdict);
 
+// Where fine detail is smoothed: the skin's volume and what smoothing added to it, between what is solid
+// without being a strut's and what is solid at all. (That the cavity keeps its distance from M is
+// claim_mesh's.)
+void claim_smoothing(const ExportedPrinter& result, const TriangleMesh& outer_mesh,
+                     const TriangleMesh& cavity, const Surface& outer, Verdict* verdict);
+
 // Directed edges without their opposite, edges with more than two triangles, triangles with two equal
 // corners.
 struct EdgeCount {

@@ -184,6 +184,8 @@ ExportedPrinter parse_printer(const json& item) {
   out.printed_balance_margin_mm = optional_number(item, "printed_balance_margin_mm");
   parse_bounds(item, &out);
   out.infeasibility_proven = item.value("infeasibility_proven", false);
+  if (item.contains("smoothing") && item.at("smoothing").at("applied").get<bool>())
+    out.added_skin_mm3 = item.at("smoothing").at("added_skin_mm3").get<double>();
   if (item.contains("sampling"))
     out.skin_struts_outside = item.at("sampling").at("skin_struts_outside").get<int>();
   out.final_nodes = item.at("counts").at("geometry").at("nodes").get<int>();

@@ -102,6 +102,7 @@ struct ExportedPrinter {
   std::optional<ExportedProof> bound_proof, relaxed_bound_proof;
   std::string balance, violated_constraint;
   int final_nodes = 0, final_struts = 0;
+  std::optional<double> added_skin_mm3;    // by smoothing; none where it was not applied
   std::optional<int> skin_struts_outside;  // as reported; none in a report that says nothing about it
   // profile
   double eta_mm = 0, skin_thickness_mm = 0, max_internal_radius_mm = 0, voxel_mm = 0;

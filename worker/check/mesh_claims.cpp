@@ -133,7 +133,7 @@ void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, c
   }
 
   const BoundingBox box = bounding_box(outer_mesh);
-  if (!result.solid()) {
+  if (!result.solid() && !result.added_skin_mm3) {
     const SkinSample skin = sample_skin_volume(outer, box, result.skin_thickness_mm, solid);
     const double allowed = skin.error_mm3 + 0.02 * skin.volume_mm3;
     verdict->claims.push_back({"skin volume", std::abs(skin.volume_mm3 - result.skin_volume_mm3) <= allowed,

@@ -68,7 +68,8 @@ class Steps {
   std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
 };
 
-// The narrow band of M1 from the distance to M: distance + h_S, clamped.
+// The narrow band of M1 from the distance to M, or the larger one to M and its smooth copy: distance + h_S,
+// clamped.
 openvdb::FloatGrid::Ptr m1_level_set(const TriangleMesh& mesh, const Skin& skin, double voxel, double band) {
   openvdb::FloatGrid::Ptr grid;
   if (skin.field.grids() != nullptr && skin.field.grids()->voxel_mm == voxel) {
@@ -76,6 +77,8 @@ openvdb::FloatGrid::Ptr m1_level_set(const TriangleMesh& mesh, const Skin& skin,
   } else {
     const double inner = std::ceil(skin.thickness_mm / voxel) + kBandVoxels + 1.0;
     grid = distance_grid(mesh, voxel, kBandVoxels + 1.0, inner);
+    if (skin.smoothing && skin.smoothing->applied)
+      openvdb::tools::compMax(*grid, *distance_grid(skin.smoothing->copy, voxel, kBandVoxels + 1.0, inner));
   }
   const float limit = static_cast<float>(band);
   for (auto it = grid->beginValueAll(); it; ++it) {

@@ -3,7 +3,7 @@
 //
 // The outer surface is M's own triangles, untouched and first in the list; behind them stands the cavity's
 // boundary, reversed, taken from one level set max(distance to M + h_S, -(distance to the nearest strut axis
-// - r)). So struts are clipped to M1, nothing ever comes nearer than about h_S to M from within, and parts
+// - r)); where fine detail is smoothed, M1 is what lies deeper than h_S below both M and the copy. So struts are clipped to M1, nothing ever comes nearer than about h_S to M from within, and parts
 // too thin for a cavity are solid.
 //
 // Guarantees, on the coordinates rounded to float as a binary STL stores them:

@@ -146,8 +146,8 @@ JobOptions parse_options(const json& item) {
       choice<StageOrder>(item, "order", {{"tight", StageOrder::kTight}, {"paper", StageOrder::kPaper}});
   options.displacement_limit_mm = number(item, "displacement_limit_mm", 1e-3, 100);
   options.seed = item.at("seed").get<std::uint64_t>();
-  if (item.at("smooth").get<std::string>() == "on")
-    throw Refusal{unsupported("smooth \"on\" is not built yet; leave it at auto or off")};
+  options.smooth =
+      choice<Smooth>(item, "smooth", {{"auto", Smooth::kAuto}, {"on", Smooth::kOn}, {"off", Smooth::kOff}});
   options.orient = choice<Orient>(item, "orient", {{"keep", Orient::kKeep}, {"best", Orient::kBest}});
   return options;
 }

@@ -17,7 +17,7 @@ struct JobFile {
   int threads = 1;
 };
 
-// Errors name the field. kUnsupported for what this version refuses by name (smooth on).
+// Errors name the field.
 Result<JobFile> parse_job(const nlohmann::json& document);
 Result<JobFile> read_job(const std::filesystem::path& path);
 

@@ -50,6 +50,17 @@ PrinterReport begin_report(const PrinterRequest& request) {
   return report;
 }
 
+void report_smoothing(const Smoothing& smoothing, PrinterReport* report) {
+  report->smoothing = SmoothingFacts{smoothing.applied, smoothing.detail, smoothing.added_skin_mm3};
+  if (smoothing.applied)
+    report->warnings.push_back(fmt::format(
+        "detail finer than the skin is smoothed away below it: {:.1f} % of the surface stands further "
+        "than {:.2g} mm from its smooth copy, and {:.0f} mm3 more are printed as skin (see "
+        "--smooth)",
+        100 * smoothing.detail.share, kDetailHeightInThicknesses * report->skin_thickness_mm,
+        smoothing.added_skin_mm3));
+}
+
 // What sampling would tell, of the frame that is taken over.
 Result<SampledFrame> sample_again(const InitialFrame& earlier, PrinterReport* report) {
   const SampledFrame& sampled = earlier.sampled;
@@ -74,10 +85,14 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
   Laps laps(&report.seconds);
 
   context.report({.stage = Stage::kSkin});
-  auto skin = build_skin(prepared.solid, SkinOptions{.thickness_mm = printer.skin_thickness_mm()}, context);
+  SkinOptions skin_options;
+  skin_options.thickness_mm = printer.skin_thickness_mm();
+  skin_options.smooth = job.options.smooth;
+  auto skin = build_skin(prepared.solid, skin_options, context);
   if (!skin) return skin.error();
   skin_volume_mm3 = skin->volume_mm3;
   report.thin = skin->thin;
+  if (skin->smoothing) report_smoothing(*skin->smoothing, &report);
   laps.lap("skin");
   if (skin->is_thin_everywhere()) {
     auto made = make_solid(prepared, *skin, request, job.options, out_dir / printer.id, &report, context);

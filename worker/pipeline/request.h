@@ -14,6 +14,7 @@
 
 #include "worker/mechanics/frame_problem.h"
 #include "worker/profile/printable_length.h"
+#include "worker/skin/fine_detail.h"
 #include "worker/solid/place.h"
 
 namespace skinframe {
@@ -71,6 +72,7 @@ struct JobOptions {
   std::optional<double> size_mm;  // largest edge of the bounding box; none: the file is in mm
   std::optional<int> skin_nodes, internal_nodes;
   std::optional<double> voxel_mm;  // of the final solid
+  Smooth smooth = Smooth::kAuto;   // of detail finer than the skin
   bool no_optimize = false;        // radii stay at their lower bounds
   StageOrder order = StageOrder::kTight;
   Orient orient = Orient::kKeep;

@@ -32,6 +32,13 @@ json tips_json(const OptimizeResult& result) {
   return tips;
 }
 
+json smoothing_json(const SmoothingFacts& smoothing) {
+  return {{"applied", smoothing.applied},
+          {"detail_share", smoothing.detail.share},
+          {"detail_rms_mm", smoothing.detail.rms_mm},
+          {"added_skin_mm3", smoothing.added_skin_mm3}};
+}
+
 json thin_json(const ThinParts& thin) {
   json regions = json::array();
   for (const ThinRegion& region : thin.regions)
@@ -243,6 +250,7 @@ json to_json(const PrinterReport& report) {
               {"termination", {{"reason", report.termination}, {"detail", report.termination_detail}}}};
   out["files"] = report.files;
   if (report.thin) out["thin"] = thin_json(*report.thin);
+  if (report.smoothing) out["smoothing"] = smoothing_json(*report.smoothing);
   if (report.sampling) out["sampling"] = sampling_json(*report.sampling);
   if (report.warm_start)
     out["warm_start"] = {{"job_id", report.warm_start->job_id},

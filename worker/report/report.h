@@ -95,6 +95,13 @@ struct SamplingFacts {
   std::optional<double> stress_largest_mpa;  // of the solid, at a vertex of the map
 };
 
+// What became of detail finer than the skin: the "smoothing" object, there unless it was off.
+struct SmoothingFacts {
+  bool applied = false;
+  FineDetail detail;
+  double added_skin_mm3 = 0;  // deeper than h_S below M, but not below its smooth copy
+};
+
 // What of an earlier job served this printer's part.
 struct WarmStartReport {
   std::string job_id;
@@ -132,7 +139,8 @@ struct PrinterReport {
   std::string termination_detail;
   std::optional<SamplingFacts> sampling;
   std::optional<OptimizeResult> optimised;
-  std::optional<ThinParts> thin;   // once the skin is built
+  std::optional<ThinParts> thin;  // once the skin is built
+  std::optional<SmoothingFacts> smoothing;
   bool is_solid = false;           // thin everywhere: printed as it is, without a frame
   std::optional<double> voxel_mm;  // of the exported mesh
   std::size_t triangles = 0;       // of the exported mesh

@@ -2,6 +2,7 @@
 #include "worker/skin/build_skin.h"
 
 #include <fmt/format.h>
+#include <openvdb/tools/Composite.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -51,6 +52,25 @@ Status check_mesh(const TriangleMesh& mesh) {
   return ok_status();
 }
 
+// At each place the larger of the two distances: that of what both surfaces enclose.
+openvdb::FloatGrid::Ptr larger(const openvdb::FloatGrid& a, openvdb::FloatGrid& b) {
+  auto result = a.deepCopy();
+  openvdb::tools::compMax(*result, b);
+  return result;
+}
+
+Smoothing smooth_detail(const TriangleMesh& mesh, const DistanceField& field, const SkinOptions& options,
+                        const RunContext& context) {
+  Smoothing smoothing;
+  const FairedSurface faired = fair_surface(mesh, field, options.thickness_mm);
+  smoothing.detail = faired.detail;
+  const bool wanted = options.smooth == Smooth::kOn || faired.detail.share >= kLeastDetailShare;
+  if (!wanted || faired.mesh.triangles.empty() || context.cancelled()) return smoothing;
+  smoothing.copy = keep_inside(faired, mesh, field, options.thickness_mm, context).mesh;
+  smoothing.applied = true;
+  return smoothing;
+}
+
 Result<Skin> build(const TriangleMesh& mesh, const SkinOptions& options, const RunContext& context) {
   const auto voxel = choose_voxel(options, surface_area(mesh));
   if (!voxel) return voxel.error();
@@ -69,8 +89,23 @@ Result<Skin> build(const TriangleMesh& mesh, const SkinOptions& options, const R
   const double deepest = 0.5 * box.extent().minCoeff() / grids->coarse_voxel_mm + 2.0;
   grids->coarse = distance_grid(mesh, grids->coarse_voxel_mm, kOuterVoxels, deepest);
   if (context.cancelled()) return cancelled_error();
+  const DistanceField body_field(grids);
 
   Skin skin;
+  double plain_cavity_mm3 = 0.0;
+  if (options.smooth != Smooth::kOff) {
+    skin.smoothing = smooth_detail(mesh, body_field, options, context);
+    if (context.cancelled()) return cancelled_error();
+  }
+  if (skin.smoothing && skin.smoothing->applied) {
+    const TriangleMesh& copy = skin.smoothing->copy;
+    auto cut = std::make_shared<DistanceGrids>(*grids);
+    cut->fine = larger(*grids->fine, *distance_grid(copy, *voxel, kOuterVoxels, inner_voxels));
+    cut->coarse = larger(*grids->coarse, *distance_grid(copy, grids->coarse_voxel_mm, kOuterVoxels, deepest));
+    plain_cavity_mm3 = signed_volume(iso_surface(*grids->fine, -options.thickness_mm));
+    grids = std::move(cut);
+    if (context.cancelled()) return cancelled_error();
+  }
   skin.thickness_mm = options.thickness_mm;
   skin.voxel_mm = *voxel;
   skin.plate_z_mm = box.min.z();
@@ -83,6 +118,8 @@ Result<Skin> build(const TriangleMesh& mesh, const SkinOptions& options, const R
     if (skin.cavity_volume_mm3 > 0.0) moment -= skin.cavity_volume_mm3 * volume_centroid(cavity);
   }
   skin.volume_mm3 = volume - skin.cavity_volume_mm3;
+  if (skin.smoothing && skin.smoothing->applied)
+    skin.smoothing->added_skin_mm3 = std::max(0.0, plain_cavity_mm3 - skin.cavity_volume_mm3);
   if (skin.volume_mm3 > 0.0) skin.centroid_mm = moment / skin.volume_mm3;
   if (context.cancelled()) return cancelled_error();
 
@@ -91,10 +128,12 @@ Result<Skin> build(const TriangleMesh& mesh, const SkinOptions& options, const R
     return internal_error("the inner surface of the skin is not closed: try another --voxel");
   }
   skin.field = DistanceField(std::move(grids));
+  if (!skin.smoothing || !skin.smoothing->applied)
+    skin.sharp_edges = find_sharp_edges(mesh, skin.field, options.thickness_mm);
   if (skin.is_thin_everywhere())
     skin.thin = {volume, 1.0, 0, {}};
   else
-    skin.thin = find_thin_parts(mesh, skin.field, options.thickness_mm, context);
+    skin.thin = find_thin_parts(mesh, body_field, options.thickness_mm, context);
   if (context.cancelled()) return cancelled_error();
   return skin;
 }
@@ -129,7 +168,16 @@ Result<Skin> build_skin(const TriangleMesh& closed_mesh, const SkinOptions& opti
   if (context.cancelled()) return cancelled_error();
   try {
     tbb::task_arena arena(std::max(1, context.threads));
-    return arena.execute([&] { return build(closed_mesh, options, context); });
+    return arena.execute([&] {
+      auto skin = build(closed_mesh, options, context);
+      if (!skin || !skin->smoothing || !skin->smoothing->applied || !skin->is_thin_everywhere()) return skin;
+      // Smoothing must not be what makes a body solid.
+      SkinOptions plain = options;
+      plain.smooth = Smooth::kOff;
+      auto unsmoothed = build(closed_mesh, plain, context);
+      if (unsmoothed) unsmoothed.value().smoothing = Smoothing{skin->smoothing->detail, false, 0.0, {}};
+      return unsmoothed;
+    });
   } catch (const std::bad_alloc&) {
     throw;  // the job ends OUT_OF_MEMORY, not INTERNAL
   } catch (const std::exception& e) {

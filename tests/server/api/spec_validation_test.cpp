@@ -89,11 +89,6 @@ TEST(SpecValidation, TheInputIsAMeshByItsHash) {
   expect_refused([](auto& s) { s.set_mesh_name(std::string(256, 'x')); }, "mesh_name");
 }
 
-TEST(SpecValidation, WhatIsNotBuiltIsUnimplementedByName) {
-  constexpr auto kUnimplemented = absl::StatusCode::kUnimplemented;
-  expect_refused([](auto& s) { s.mutable_options()->set_smooth(v1::SMOOTH_ON); }, "smooth", kUnimplemented);
-}
-
 TEST(SpecValidation, AFrameProblemStandsAloneAndWhatStandsBesideItIsNamed) {
   const auto with = [](const std::function<void(v1::JobSpec&)>& change) {
     return [change](v1::JobSpec& spec) {

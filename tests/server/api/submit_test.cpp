@@ -62,12 +62,6 @@ TEST_F(SubmitTest, WrongSpecsAndRequestIdsAreInvalidArguments) {
   EXPECT_EQ(submit(request("not an id")).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
 }
 
-TEST_F(SubmitTest, WhatIsNotBuiltIsUnimplemented) {
-  auto smooth = request();
-  smooth.mutable_spec()->mutable_options()->set_smooth(v1::SMOOTH_ON);
-  EXPECT_EQ(submit(smooth).error_code(), grpc::StatusCode::UNIMPLEMENTED);
-}
-
 TEST_F(SubmitTest, AMeshThatIsNotUploadedIsAFailedPrecondition) {
   auto absent = request();
   absent.mutable_spec()->set_mesh_sha256(std::string(64, '0'));

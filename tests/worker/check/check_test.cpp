@@ -49,10 +49,11 @@ class CheckTest : public testing::Test {
   static fs::path honest() { return folder_->path() / "honest"; }
 
   // The names of the claims that do not hold, after `spoil` changed a copy.
-  static std::vector<std::string> denied(const std::function<void(const fs::path&)>& spoil) {
+  static std::vector<std::string> denied(const std::function<void(const fs::path&)>& spoil,
+                                         const fs::path& from = honest()) {
     const fs::path copy = folder_->path() / "copy";
     fs::remove_all(copy);
-    fs::copy(honest(), copy, fs::copy_options::recursive);
+    fs::copy(from, copy, fs::copy_options::recursive);
     spoil(copy);
     RunContext context;
     auto verdicts = check_directory(copy, context);
@@ -63,12 +64,15 @@ class CheckTest : public testing::Test {
         if (!claim.holds) names.push_back(claim.name);
     return names;
   }
-  static std::vector<std::string> denied_report(const std::function<void(json&)>& lie) {
-    return denied([&](const fs::path& copy) {
-      json report = read_json(copy / "report.json");
-      lie(report["printers"][0]);
-      write_json(copy / "report.json", report);
-    });
+  static std::vector<std::string> denied_report(const std::function<void(json&)>& lie,
+                                                const fs::path& from = honest()) {
+    return denied(
+        [&](const fs::path& copy) {
+          json report = read_json(copy / "report.json");
+          lie(report["printers"][0]);
+          write_json(copy / "report.json", report);
+        },
+        from);
   }
   static std::vector<std::string> denied_frame(const std::function<void(json&)>& lie) {
     return denied([&](const fs::path& copy) {
@@ -345,6 +349,29 @@ TEST_F(CheckTest, AResultCalledInfeasibleThatKeepsItsLimitsIsSeen) {
                 printer["violated_constraint"] = "displacement";
               }),
               Names("infeasible"));
+}
+
+TEST_F(CheckTest, FalseFiguresOfSmoothedDetailAreSeen) {
+  const fs::path smoothed = folder_->path() / "smoothed";
+  JobRequest request = test::sample_job("relief", 44, 60, folder_->path());
+  request.options.smooth = Smooth::kOn;
+  request.options.no_optimize = true;
+  RunContext context;
+  const auto outcomes = run_pipeline(request, smoothed, PipelineObserver{}, context);
+  ASSERT_TRUE(outcomes.ok()) << outcomes.error().message;
+  ASSERT_TRUE(outcomes->front().succeeded()) << outcomes->front().detail;
+  const json told = read_json(smoothed / "report.json")["printers"][0];
+  EXPECT_TRUE(told["smoothing"]["applied"]);
+  EXPECT_GT(told["smoothing"]["added_skin_mm3"], 0.0);
+  EXPECT_THAT(denied([](const fs::path&) {}, smoothed), testing::IsEmpty());
+  EXPECT_THAT(denied_report([](json& p) { p["skin_volume_mm3"] = p["skin_volume_mm3"].get<double>() * 0.5; },
+                            smoothed),
+              Names("skin volume"));
+  EXPECT_THAT(
+      denied_report(
+          [](json& p) { p["smoothing"]["added_skin_mm3"] = p["skin_volume_mm3"].get<double>() * 0.5; },
+          smoothed),
+      Names("smoothed detail"));
 }
 
 TEST_F(CheckTest, AMissingOrBrokenFileIsAnErrorThatNamesIt) {

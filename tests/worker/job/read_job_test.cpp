@@ -128,13 +128,15 @@ TEST(ReadJob, EachWrongFieldIsRefusedByName) {
   }
 }
 
-TEST(ReadJob, WhatIsNotBuiltIsRefusedByName) {
+TEST(ReadJob, SmoothingIsTakenAsAsked) {
   json job = valid_job();
+  EXPECT_EQ(parse_job(job)->request.options.smooth, Smooth::kAuto);
   job["options"]["smooth"] = "on";
-  auto refused = parse_job(job);
-  ASSERT_FALSE(refused.ok());
-  EXPECT_EQ(refused.error().kind, ErrorKind::kUnsupported);
-  EXPECT_NE(refused.error().message.find("smooth"), std::string::npos);
+  EXPECT_EQ(parse_job(job)->request.options.smooth, Smooth::kOn);
+  job["options"]["smooth"] = "off";
+  EXPECT_EQ(parse_job(job)->request.options.smooth, Smooth::kOff);
+  job["options"]["smooth"] = "much";
+  EXPECT_FALSE(parse_job(job).ok());
 }
 
 }  // namespace
