@@ -21,29 +21,48 @@ struct RelativeLengthCost {
   }
 };
 
-struct PinnedMidpoint {
+// How firmly a node stands: only a less firm one gives way, or one of the same chain to the next on it.
+enum class Hold { kFree, kOnChain, kFixed };
+Hold hold_of(const NodeTraits& node, const SharpChains& chains) {
+  if (node.pinned || chains.is_corner(node.chain_vertex)) return Hold::kFixed;
+  return node.chain_vertex >= 0 ? Hold::kOnChain : Hold::kFree;
+}
+
+struct HeldOrMidpoint {
   NodeTraitsMap traits;
+  const SharpChains* chains;
   template <class Profile>
   boost::optional<Kernel::Point_3> operator()(const Profile& profile) const {
-    const bool pinned0 = traits[profile.v0()].pinned, pinned1 = traits[profile.v1()].pinned;
-    if (pinned0 && pinned1) return boost::none;
-    if (pinned0) return profile.p0();
-    if (pinned1) return profile.p1();
-    return CGAL::midpoint(profile.p0(), profile.p1());
+    const NodeTraits &a = traits[profile.v0()], &b = traits[profile.v1()];
+    const Hold hold_a = hold_of(a, *chains), hold_b = hold_of(b, *chains);
+    if (hold_a == Hold::kFree && hold_b == Hold::kFree) return CGAL::midpoint(profile.p0(), profile.p1());
+    if (hold_a == Hold::kFixed && hold_b == Hold::kFixed) return boost::none;
+    if (hold_a == Hold::kFree) return profile.p1();
+    if (hold_b == Hold::kFree) return profile.p0();
+    if (!chains->are_joined(a.chain_vertex, b.chain_vertex)) return boost::none;
+    return hold_b == Hold::kFixed ? profile.p1() : profile.p0();
   }
 };
 
-// The vertex that stays takes the traits of both.
+// The vertex that stays takes the traits of both, and the firmer one's place on its chain.
 struct InheritTraits : sms::Edge_collapse_visitor_base<HalfEdgeMesh> {
   using vertex_descriptor = HalfEdgeMesh::Vertex_index;
-  explicit InheritTraits(NodeTraitsMap map) : traits(map) {}
+  InheritTraits(NodeTraitsMap map, SharpChains* all) : traits(map), chains(all) {}
   void OnCollapsing(const Profile& profile, const boost::optional<Point>&) {
     const NodeTraits &a = traits[profile.v0()], &b = traits[profile.v1()];
-    merged = {0.5 * (a.edge_length_mm + b.edge_length_mm), a.pinned || b.pinned};
+    const bool a_stays = hold_of(a, *chains) >= hold_of(b, *chains);
+    const NodeTraits &firmer = a_stays ? a : b, &other = a_stays ? b : a;
+    merged = {0.5 * (a.edge_length_mm + b.edge_length_mm), a.pinned || b.pinned, firmer.chain_vertex};
+    given_up = other.chain_vertex;
   }
-  void OnCollapsed(const Profile&, vertex_descriptor kept) { traits[kept] = merged; }
+  void OnCollapsed(const Profile&, vertex_descriptor kept) {
+    traits[kept] = merged;
+    if (given_up >= 0) chains->drop(given_up);
+  }
   NodeTraitsMap traits;
+  SharpChains* chains;
   NodeTraits merged;
+  int given_up = -1;
 };
 
 // A collapse on a closed surface takes three edges and one vertex.
@@ -57,15 +76,15 @@ struct AtEdgeCount {
 
 }  // namespace
 
-void collapse_to_count(HalfEdgeMesh& mesh, NodeTraitsMap traits, int nodes) {
+void collapse_to_count(HalfEdgeMesh& mesh, NodeTraitsMap traits, SharpChains& chains, int nodes) {
   const auto surplus = static_cast<std::ptrdiff_t>(mesh.number_of_vertices()) - nodes;
   if (surplus <= 0) return;
   const auto edges = static_cast<std::ptrdiff_t>(mesh.number_of_edges()) - 3 * surplus;
   if (edges <= 0) return;
   sms::edge_collapse(mesh, AtEdgeCount{static_cast<std::size_t>(edges)},
                      CGAL::parameters::get_cost(RelativeLengthCost{traits})
-                         .get_placement(PinnedMidpoint{traits})
-                         .visitor(InheritTraits(traits)));
+                         .get_placement(HeldOrMidpoint{traits, &chains})
+                         .visitor(InheritTraits(traits, &chains)));
   mesh.collect_garbage();
 }
 

@@ -35,7 +35,14 @@ constexpr int kBisections = 20;
 
 class Following {
  public:
-  Following(HalfEdgeMesh& mesh, const Skin& skin) : mesh_(mesh), skin_(skin) {
+  Following(HalfEdgeMesh& mesh, const std::vector<char>& held, const std::vector<std::pair<int, int>>& kept,
+            const Skin& skin)
+      : mesh_(mesh), skin_(skin) {
+    kept_ = mesh_.add_property_map<Edge, bool>("e:kept", false).first;
+    for (const auto& [a, b] : kept)
+      if (const Halfedge h = mesh_.halfedge(Vertex(a), Vertex(b)); h.is_valid()) kept_[mesh_.edge(h)] = true;
+    held_ = mesh_.add_property_map<Vertex, bool>("v:held", false).first;
+    for (std::size_t v = 0; v < held.size(); ++v) held_[Vertex(static_cast<int>(v))] = held[v] != 0;
     ratio_ = mesh_.add_property_map<Edge, double>("e:ratio", 0.0).first;
     stuck_ = mesh_.add_property_map<Edge, bool>("e:stuck", false).first;
     for (auto e : mesh_.edges()) measure(e);
@@ -48,7 +55,7 @@ class Following {
     for (auto e : mesh_.edges()) {
       if (ratio_[e] <= 1.0) continue;
       const Halfedge h = mesh_.halfedge(e);
-      if (!may_flip(mesh_, h)) continue;
+      if (kept_[e] || !may_flip(mesh_, h)) continue;
       const auto [c, d] = others(h);
       if (ratio_between(c, d) > kWorthAFlip * ratio_[e] || angle_after_flip(h) < kLeastFlippedAngle) continue;
       CGAL::Euler::flip_edge(h, mesh_);
@@ -78,6 +85,9 @@ class Following {
     }
     const Halfedge to_node = CGAL::Euler::split_edge(h, mesh_);
     mesh_.point(mesh_.target(to_node)) = to_cgal(*node);
+    const bool kept = kept_[worst];
+    kept_[mesh_.edge(h)] = kept_[mesh_.edge(to_node)] = kept;
+    held_[mesh_.target(to_node)] = kept;
     CGAL::Euler::split_face(to_node, mesh_.next(h), mesh_);
     CGAL::Euler::split_face(mesh_.opposite(h), mesh_.next(mesh_.opposite(to_node)), mesh_);
     ++done.nodes_added;
@@ -87,9 +97,9 @@ class Following {
 
   // Moves each node that is not held towards the middle of its neighbours, on M1, where that widens the least
   // angle about it and brings no deviation.
-  void round_triangles(const std::vector<char>& held) {
+  void round_triangles() {
     for (auto v : mesh_.vertices()) {
-      if (static_cast<std::size_t>(v) < held.size() && held[v]) continue;
+      if (held_[v]) continue;
       const Eigen::Vector3d from = at(v);
       const double angle = least_angle_about(v), ratio = worst_ratio_about(v);
       Eigen::Vector3d middle = Eigen::Vector3d::Zero();
@@ -110,9 +120,17 @@ class Following {
     }
     flip_to_delaunay(mesh_, [&](Halfedge h) {
       const auto [c, d] = others(h);
-      return ratio_between(c, d) <= std::max(1.0, ratio_[mesh_.edge(h)]);
+      return !kept_[mesh_.edge(h)] && ratio_between(c, d) <= std::max(1.0, ratio_[mesh_.edge(h)]);
     });
     for (auto e : mesh_.edges()) measure(e);
+  }
+
+  std::vector<std::pair<int, int>> kept_edges() const {
+    std::vector<std::pair<int, int>> kept;
+    for (auto e : mesh_.edges())
+      if (kept_[e])
+        kept.emplace_back(static_cast<int>(mesh_.vertex(e, 0)), static_cast<int>(mesh_.vertex(e, 1)));
+    return kept;
   }
 
   SkinFollowing done;
@@ -248,7 +266,7 @@ class Following {
       const auto [c, d] = others(h);
       const Eigen::Vector3d a = at(mesh_.source(h)), b = at(mesh_.target(h));
       if (angle_at(at(c), a, b) + angle_at(at(d), a, b) <= std::numbers::pi + 1e-3) continue;
-      if (!may_flip(mesh_, h) || ratio_between(c, d) > std::max(1.0, ratio_[e])) continue;
+      if (kept_[e] || !may_flip(mesh_, h) || ratio_between(c, d) > std::max(1.0, ratio_[e])) continue;
       for (const Halfedge side :
            {mesh_.next(h), mesh_.prev(h), mesh_.next(mesh_.opposite(h)), mesh_.prev(mesh_.opposite(h))})
         todo.insert(mesh_.edge(side));
@@ -260,7 +278,8 @@ class Following {
   HalfEdgeMesh& mesh_;
   const Skin& skin_;
   HalfEdgeMesh::Property_map<Edge, double> ratio_;
-  HalfEdgeMesh::Property_map<Edge, bool> stuck_;
+  HalfEdgeMesh::Property_map<Edge, bool> stuck_, kept_;
+  HalfEdgeMesh::Property_map<Vertex, bool> held_;
   std::optional<PointTree> surface_;
   std::size_t most_nodes_ = 0;
 };
@@ -294,7 +313,8 @@ Eigen::Vector3d onto_m1(const Eigen::Vector3d& p, const Skin& skin) {
   return q;
 }
 
-Result<SkinFollowing> follow_skin(TriangleMesh& triangles, const std::vector<char>& held, const Skin& skin,
+Result<SkinFollowing> follow_skin(TriangleMesh& triangles, const std::vector<char>& held,
+                                  std::vector<std::pair<int, int>>& kept, const Skin& skin,
                                   const RunContext& context) {
   try {
     HalfEdgeMesh mesh;
@@ -303,7 +323,7 @@ Result<SkinFollowing> follow_skin(TriangleMesh& triangles, const std::vector<cha
       if (!mesh.add_face(Vertex(t[0]), Vertex(t[1]), Vertex(t[2])).is_valid())
         return internal_error("the skin triangulation is not a manifold");
     }
-    Following following(mesh, skin);
+    Following following(mesh, held, kept, skin);
     for (int round = 0; round < kFlipRounds && following.flip_deviating(); ++round) {
     }
     while (following.divide_worst()) {
@@ -311,9 +331,10 @@ Result<SkinFollowing> follow_skin(TriangleMesh& triangles, const std::vector<cha
     }
     for (int round = 0; round < kRoundingRounds; ++round) {
       if (context.cancelled()) return cancelled_error();
-      following.round_triangles(held);
+      following.round_triangles();
     }
     following.done.edges_left = following.edges_left();
+    kept = following.kept_edges();
     triangles = {};
     for (auto v : mesh.vertices()) triangles.vertices.push_back(to_eigen(mesh.point(v)));
     for (auto f : mesh.faces()) {

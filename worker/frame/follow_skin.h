@@ -9,6 +9,9 @@
 // edge-manifold and of its genus.
 #pragma once
 
+#include <utility>
+#include <vector>
+
 #include "worker/frame/frame.h"
 #include "worker/run/run_context.h"
 #include "worker/skin/build_skin.h"
@@ -41,8 +44,11 @@ struct SkinFollowing {
   int edges_left = 0;  // that still deviate: too short to divide, or beyond the bound on nodes
 };
 
-// Vertices keep their numbers, those that are held (one a vertex) their places; new ones come after.
-Result<SkinFollowing> follow_skin(TriangleMesh& mesh, const std::vector<char>& held, const Skin& skin,
+// Vertices keep their numbers, those that are held (one a vertex) their places; new ones come after. kept:
+// edges that are never flipped; where one is divided, its halves are kept and the new node is held.
+// Afterwards `kept` are the edges that they have become.
+Result<SkinFollowing> follow_skin(TriangleMesh& mesh, const std::vector<char>& held,
+                                  std::vector<std::pair<int, int>>& kept, const Skin& skin,
                                   const RunContext& context);
 
 }  // namespace skinframe

@@ -27,6 +27,8 @@ constexpr double kCellOfEdge =
     0.70710678118654752;                 // volume of a node's cell in a^3: nodes packed like spheres
 constexpr double kMarginInEdges = 0.25;  // of internal nodes below M1
 constexpr double kPinSpacingInEdges = 1.2;
+constexpr double kLeastOfPiece = 0.5;     // of a piece's volume, within its triangulation
+constexpr double kBevelInVoxels = 1.5;    // how far the coarse surface may stand from M1's sharp edges
 constexpr double kContactSlackMm = 0.05;  // of a node's height, after projection to the fine field
 
 struct Piece {
@@ -54,6 +56,8 @@ std::vector<Piece> choose_pieces(const Skin& skin, double finger_edge, const Str
       volume += signed_volume(surface);
       continue;
     }
+    piece.sampling.chains =
+        SharpChains(surface, skin.sharp_edges, kBevelInVoxels * skin.field.coarse_voxel_mm());
     piece.surface = std::move(surface);
     pieces.push_back(std::move(piece));
   }
@@ -152,8 +156,21 @@ void add_skin_piece(Frame& frame, const TriangleMesh& mesh) {
   }
 }
 
+// Where two sharp edges run closer than the grid that M1 was read from (thin plates), chains along them may
+// turn the surface inside out: then it is done without.
+Result<PieceTriangulation> triangulate(const Piece& piece, const RunContext& context) {
+  auto made = triangulate_piece(piece.surface, piece.sampling, context);
+  if (!made || piece.sampling.chains.empty() ||
+      signed_volume(made->mesh) >= kLeastOfPiece * signed_volume(piece.surface))
+    return made;
+  PieceSampling plain = piece.sampling;
+  plain.chains = {};
+  return triangulate_piece(piece.surface, plain, context);
+}
+
 struct SkinSample {
   Frame frame;
+  std::vector<std::pair<int, int>> sharp_chords;
   int nodes_sampled = 0;
 };
 
@@ -179,15 +196,21 @@ Result<SkinSample> sample_skin(std::vector<Piece>& pieces, const Skin& skin, con
     std::vector<int> piece_of;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       pieces[i].sampling.edge_length_mm = pieces[i].edge_length_mm;
-      auto mesh = triangulate_piece(pieces[i].surface, pieces[i].sampling, context);
-      if (!mesh) return mesh.error();
-      const std::vector<char> held = held_nodes(*mesh, pieces[i], contact_z);
-      for (auto& p : mesh.value().vertices) p = settle(p, skin);
-      sample.nodes_sampled += static_cast<int>(mesh->vertices.size());
-      const auto followed = follow_skin(mesh.value(), held, skin, context);
+      auto piece = triangulate(pieces[i], context);
+      if (!piece) return piece.error();
+      TriangleMesh& mesh = piece.value().mesh;
+      std::vector<char> held = held_nodes(mesh, pieces[i], contact_z);
+      for (std::size_t v = 0; v < held.size(); ++v) {
+        held[v] = held[v] || piece->on_sharp_edge[v];
+        if (!piece->on_sharp_edge[v]) mesh.vertices[v] = settle(mesh.vertices[v], skin);
+      }
+      sample.nodes_sampled += static_cast<int>(mesh.vertices.size());
+      const auto followed = follow_skin(mesh, held, piece.value().sharp_chords, skin, context);
       if (!followed) return followed.error();
       struts_left += followed->edges_left;
-      add_skin_piece(frame, *mesh);
+      const int first = static_cast<int>(frame.nodes_mm.size());
+      for (const auto& [a, b] : piece->sharp_chords) sample.sharp_chords.emplace_back(first + a, first + b);
+      add_skin_piece(frame, mesh);
       piece_of.resize(frame.nodes_mm.size(), static_cast<int>(i));
     }
     const auto joined = join_pieces(frame, piece_of, options.strut_radius_mm, skin);
@@ -298,6 +321,7 @@ Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options,
   auto sample = sample_skin(pieces, skin, options, *total, contact_height, sampled.warnings, context);
   if (!sample) return sample.error();
   sampled.frame = std::move(sample.value().frame);
+  sampled.sharp_chords = std::move(sample.value().sharp_chords);
   sampled.skin_nodes_sampled = sample->nodes_sampled;
   sampled.pieces = static_cast<int>(pieces.size());
   sampled.mean_skin_edge_mm = mean_skin_edge(sampled.frame);

@@ -5,15 +5,16 @@
 // Skin nodes: M1 is collapsed to the wanted count, then relaxed and fitted to the density
 // (triangulate_piece.h), which follows curvature and, when a map is given, the stress of the solid
 // (node_count.h). The base contact is kept: nodes there stay there, its rim is followed, and three nodes not
-// in line stand on it at least. Then struts that leave M1 too far are divided (follow_skin.h): the nodes
-// added there are skin nodes too. Internal nodes: Lloyd on the voxels deeper than a margin below M1. Default
-// count: those that the spacing of the skin edges asks for, at most 0.35 of the skin nodes (the paper's
-// frames have 0.12 to 0.44). Internal struts: from each internal node to its nearest nodes, where the strut
-// with the body radius fits (required_depth_mm in convex_region.h). What does not fit is divided once
-// where its node needs it, and of two struts that cross the longer is left out (internal_struts.h).
-// Pieces of M1: each is a component of the triangulation. Pieces too small for a triangulation, and pieces
-// that no strut through the solid neck can join to the largest, stay hollow without a frame; a warning says
-// so.
+// in line stand on it at least. Sharp edges of M1 (sharp_edges.h) keep nodes: their corners are nodes, others
+// slide along, and chords follow them (sharp_chains.h). Then struts that leave M1 too far are divided
+// (follow_skin.h): the nodes added there are skin nodes too. Internal nodes: Lloyd on the voxels deeper than
+// a margin below M1. Default count: those that the spacing of the skin edges asks for, at most 0.35 of the
+// skin nodes (the paper's frames have 0.12 to 0.44). Internal struts: from each internal node to its nearest
+// nodes, where the strut with the body radius fits (required_depth_mm in convex_region.h). What does not fit
+// is divided once where its node needs it, and of two struts that cross the longer is left out
+// (internal_struts.h). Pieces of M1: each is a component of the triangulation. Pieces too small for a
+// triangulation, and pieces that no strut through the solid neck can join to the largest, stay hollow without
+// a frame; a warning says so.
 //
 // Guarantees:
 //  1. frame.h's invariants; the skin triangulation is closed, edge-manifold, outward, of the genus of M1's
@@ -25,6 +26,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "worker/frame/frame.h"
@@ -56,9 +58,10 @@ TriangleAngles measure_angles(const Frame& frame);
 struct SampledFrame {
   Frame frame;
   std::vector<int>
-      contact_nodes;             // skin nodes above the base contact (widened when it held fewer than three)
-  int skin_nodes_requested = 0;  // by the option or by the count rule
-  int skin_nodes_sampled = 0;    // before struts were divided; frame.skin_node_count is after
+      contact_nodes;  // skin nodes above the base contact (widened when it held fewer than three)
+  std::vector<std::pair<int, int>> sharp_chords;  // skin struts that follow a sharp edge of M1
+  int skin_nodes_requested = 0;                   // by the option or by the count rule
+  int skin_nodes_sampled = 0;  // before struts were divided; frame.skin_node_count is after
   double finger_edge_mm = 0.0;
   double mean_skin_edge_mm = 0.0;
   double worst_outward_chord_mm = 0.0;  // furthest that the axis of a skin strut stands outside of M1,

@@ -72,8 +72,9 @@ Eigen::Vector3d lloyd_step(const HalfEdgeMesh& mesh, const NodeTraitsMap& traits
 class Relaxation {
  public:
   Relaxation(const HalfEdgeMesh& surface, const std::vector<double>& edge_length, double contact_z,
-             std::vector<Eigen::Vector3d> pins)
+             std::vector<Eigen::Vector3d> pins, SharpChains& chains)
       : surface_(surface),
+        chains_(chains),
         edge_length_(edge_length),
         contact_z_(contact_z),
         rim_(rim_points(surface, contact_z)),
@@ -93,33 +94,44 @@ class Relaxation {
   }
 
   void round(HalfEdgeMesh& mesh, NodeTraitsMap traits, bool onto_rim) const {
-    flip_to_delaunay(mesh);
+    flip(mesh, traits);
     std::vector<Eigen::Vector3d> moved(mesh.num_vertices());
     for (auto v : mesh.vertices()) moved[v] = lloyd_step(mesh, traits, v);
     for (auto v : mesh.vertices()) {
-      if (!traits[v].pinned) project(mesh, traits, v, moved[v]);
+      if (traits[v].pinned || chains_.is_corner(traits[v].chain_vertex)) continue;
+      if (traits[v].chain_vertex < 0) {
+        project(mesh, traits, v, moved[v]);
+      } else {
+        mesh.point(v) = to_cgal(chains_.slide(traits[v].chain_vertex));
+      }
     }
     if (!onto_rim || rim_.empty()) return;
     for (auto v : mesh.vertices()) {
-      if (!traits[v].pinned) snap(mesh, traits, v);
+      if (!is_kept(traits[v])) snap(mesh, traits, v);
     }
   }
+  void flip(HalfEdgeMesh& mesh, NodeTraitsMap traits) const {
+    flip_to_delaunay(mesh, [&](HalfEdgeMesh::Halfedge_index h) {
+      return !chains_.are_joined(traits[mesh.source(h)].chain_vertex, traits[mesh.target(h)].chain_vertex);
+    });
+  }
 
-  // By L-BFGS on the energy of the tessellation; pinned nodes and those on the rim stay.
+  // By L-BFGS on the energy of the tessellation; pinned nodes and those on the rim or a sharp edge stay.
   void follow_density(HalfEdgeMesh& mesh, NodeTraitsMap traits, const RunContext& context) const {
     std::vector<Eigen::Vector3d> sites;
     std::vector<char> held;
     for (auto v : mesh.vertices()) {
       sites.push_back(to_eigen(mesh.point(v)));
-      held.push_back(traits[v].pinned || on_rim(sites.back()));
+      held.push_back(is_kept(traits[v]) || on_rim(sites.back()));
     }
     minimise_cvt(samples_, held, kCvtIterations, context, sites);
     for (auto v : mesh.vertices())
       if (!held[v]) project(mesh, traits, v, sites[v]);
-    for (int sweep = 0; sweep < kFlipSweepsAfterCvt; ++sweep) flip_to_delaunay(mesh);
+    for (int sweep = 0; sweep < kFlipSweepsAfterCvt; ++sweep) flip(mesh, traits);
   }
 
  private:
+  static bool is_kept(const NodeTraits& node) { return node.pinned || node.chain_vertex >= 0; }
   bool on_rim(const Eigen::Vector3d& p) const {
     return !rim_.empty() && (rim_.point(rim_.nearest(p)) - p).norm() < kOnRimMm;
   }
@@ -152,6 +164,7 @@ class Relaxation {
   }
 
   const HalfEdgeMesh& surface_;
+  SharpChains& chains_;
   const std::vector<double>& edge_length_;
   double contact_z_;
   PointTree rim_, pins_;
@@ -207,8 +220,8 @@ TriangleMesh to_triangles(const HalfEdgeMesh& mesh) {
 
 }  // namespace
 
-Result<TriangleMesh> triangulate_piece(const TriangleMesh& piece, const PieceSampling& sampling,
-                                       const RunContext& context) {
+Result<PieceTriangulation> triangulate_piece(const TriangleMesh& piece, const PieceSampling& sampling,
+                                             const RunContext& context) {
   try {
     std::vector<int> origin;
     auto surface = to_half_edges(piece, origin);
@@ -220,11 +233,17 @@ Result<TriangleMesh> triangulate_piece(const TriangleMesh& piece, const PieceSam
     NodeTraitsMap traits = mesh.add_property_map<Vertex, NodeTraits>("v:traits").first;
     for (auto v : mesh.vertices()) traits[v].edge_length_mm = edge_length[v];
     for (int pin : sampling.pins) traits[Vertex(pin)].pinned = true;
-    collapse_to_count(mesh, traits, sampling.nodes);
+    SharpChains chains = sampling.chains;
+    if (!chains.empty())
+      for (std::size_t v = 0; v < piece.vertices.size(); ++v)
+        if (chains.is_on(static_cast<int>(v)))
+          traits[Vertex(static_cast<int>(v))].chain_vertex = static_cast<int>(v);
+    collapse_to_count(mesh, traits, chains, sampling.nodes);
 
-    std::vector<Eigen::Vector3d> pins;
+    // What stands for the rim where it is near: pins and sharp edges.
+    std::vector<Eigen::Vector3d> pins = chains.points_mm();
     for (int pin : sampling.pins) pins.push_back(piece.vertices[pin]);
-    const Relaxation relaxation(*surface, edge_length, sampling.contact_z_mm, std::move(pins));
+    const Relaxation relaxation(*surface, edge_length, sampling.contact_z_mm, std::move(pins), chains);
     for (int round = 0; round < kEvenRounds + kRimRounds; ++round) {
       if (context.cancelled()) return cancelled_error();
       relaxation.round(mesh, traits, round >= kEvenRounds);
@@ -232,8 +251,15 @@ Result<TriangleMesh> triangulate_piece(const TriangleMesh& piece, const PieceSam
     relaxation.follow_density(mesh, traits, context);
     if (context.cancelled()) return cancelled_error();
     for (int round = 0; round < kRoundingRounds; ++round) relaxation.round(mesh, traits, true);
-    flip_to_delaunay(mesh);
-    return to_triangles(mesh);
+    relaxation.flip(mesh, traits);
+    PieceTriangulation result{to_triangles(mesh), std::vector<char>(mesh.num_vertices(), 0), {}};
+    for (auto v : mesh.vertices()) result.on_sharp_edge[v] = traits[v].chain_vertex >= 0;
+    for (auto e : mesh.edges()) {
+      const Vertex u = mesh.vertex(e, 0), v = mesh.vertex(e, 1);
+      if (chains.are_joined(traits[u].chain_vertex, traits[v].chain_vertex))
+        result.sharp_chords.emplace_back(u, v);
+    }
+    return result;
   } catch (const std::bad_alloc&) {
     throw;  // the job ends OUT_OF_MEMORY, not INTERNAL
   } catch (const std::exception& e) {

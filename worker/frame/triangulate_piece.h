@@ -8,8 +8,10 @@
 // edge-manifold as the piece is, with its genus. An unconstrained clustering dual was not (m).
 #pragma once
 
+#include <utility>
 #include <vector>
 
+#include "worker/frame/sharp_chains.h"
 #include "worker/mesh/triangle_mesh.h"
 #include "worker/run/run_context.h"
 
@@ -19,11 +21,18 @@ struct PieceSampling {
   std::vector<double> edge_length_mm;  // wanted, one a vertex of the piece
   int nodes = 0;                       // wanted count, >= 4
   std::vector<int> pins;               // vertices of the piece that stay where they are and stay nodes
+  SharpChains chains;                  // of the piece: kept, see there
   double contact_z_mm = 0.0;  // the piece's surface at or below is base contact, whose rim nodes follow
 };
 
-// The count is met exactly unless the piece's topology or its pins need more nodes.
-Result<TriangleMesh> triangulate_piece(const TriangleMesh& piece, const PieceSampling& sampling,
-                                       const RunContext& context);
+struct PieceTriangulation {
+  TriangleMesh mesh;
+  std::vector<char> on_sharp_edge;                // one a vertex: it stands on a sharp edge of M1
+  std::vector<std::pair<int, int>> sharp_chords;  // edges of the mesh that follow one
+};
+
+// The count is met exactly unless the piece's topology, its pins or its chains' corners need more nodes.
+Result<PieceTriangulation> triangulate_piece(const TriangleMesh& piece, const PieceSampling& sampling,
+                                             const RunContext& context);
 
 }  // namespace skinframe

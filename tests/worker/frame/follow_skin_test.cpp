@@ -39,6 +39,8 @@ void expect_follows(const TriangleMesh& mesh, const Skin& skin) {
     }
 }
 
+std::vector<std::pair<int, int>> none;
+
 TEST(FollowSkin, ChordOfASphereSinksByItsSagitta) {
   const Skin skin = skin_of(bodies::sphere(20));
   const Eigen::Vector3d centre(0, 0, 20), a(19, 0, 0), b(0, 19, 0);
@@ -47,11 +49,27 @@ TEST(FollowSkin, ChordOfASphereSinksByItsSagitta) {
   EXPECT_NEAR(outward, 0.0, 0.05);
 }
 
+// A chord that is kept is divided and not flipped, and its halves are told.
+TEST(FollowSkin, AKeptEdgeEndsAsAPathBetweenItsEnds) {
+  const Skin skin = skin_of(bodies::torus(24, 9));
+  TriangleMesh mesh = shrunk_torus(24, 9, 9, 8);
+  std::vector<std::pair<int, int>> kept{{mesh.triangles[0][0], mesh.triangles[0][1]}};
+  const auto [from, to] = kept[0];
+  ASSERT_TRUE(follow_skin(mesh, {}, kept, skin, RunContext{}).ok());
+  std::map<int, int> degree;
+  for (const auto& [a, b] : kept) {
+    ++degree[a];
+    ++degree[b];
+  }
+  EXPECT_EQ(degree.size(), kept.size() + 1);
+  for (const auto& [node, count] : degree) EXPECT_EQ(count, node == from || node == to ? 1 : 2);
+}
+
 TEST(FollowSkin, WhatFollowsAlreadyKeepsItsNodesWhereTheyAreHeld) {
   const Skin skin = skin_of(bodies::sphere(20));
   TriangleMesh mesh = shrunk_sphere(20, 2);
   const TriangleMesh before = mesh;
-  const auto done = follow_skin(mesh, std::vector<char>(mesh.vertices.size(), 1), skin, RunContext{});
+  const auto done = follow_skin(mesh, std::vector<char>(mesh.vertices.size(), 1), none, skin, RunContext{});
   ASSERT_TRUE(done.ok());
   EXPECT_EQ(done->nodes_added, 0);
   EXPECT_EQ(mesh.vertices, before.vertices);
@@ -63,7 +81,7 @@ TEST(FollowSkin, EdgesAcrossAWaistAreDividedUntilTheyFollowIt) {
   const Skin skin = skin_of(bodies::torus(24, 9));
   TriangleMesh mesh = shrunk_torus(24, 9, 9, 8);
   const auto nodes = mesh.vertices.size();
-  const auto done = follow_skin(mesh, {}, skin, RunContext{});
+  const auto done = follow_skin(mesh, {}, none, skin, RunContext{});
   ASSERT_TRUE(done.ok());
   EXPECT_GT(done->nodes_added, 0);
   EXPECT_EQ(mesh.vertices.size(), nodes + done->nodes_added);
@@ -76,7 +94,7 @@ TEST(FollowSkin, EdgesAcrossAWaistAreDividedUntilTheyFollowIt) {
 TEST(FollowSkin, GrowthIsBoundedAndWhatIsLeftIsCounted) {
   const Skin skin = skin_of(bodies::sphere(25));
   TriangleMesh mesh = shrunk_sphere(25, 0);  // an icosahedron: every edge sinks by 3.6 mm
-  const auto done = follow_skin(mesh, {}, skin, RunContext{});
+  const auto done = follow_skin(mesh, {}, none, skin, RunContext{});
   ASSERT_TRUE(done.ok());
   EXPECT_LE(mesh.vertices.size(), static_cast<std::size_t>(12 * (1.0 + kMostAdded)));
   EXPECT_GT(done->edges_left, 0);
