@@ -13,7 +13,7 @@
 
 namespace skinframe::server {
 
-// INVALID_ARGUMENT, or UNIMPLEMENTED for what the API has and this version does not build. Meshes and frame
+// INVALID_ARGUMENT. Meshes and frame
 // problems are not opened: what is wrong inside one is the worker's to say.
 absl::Status validate_spec(const v1::JobSpec& spec, const Catalog& catalog);
 
