@@ -98,17 +98,17 @@ void claim_overhang(const ExportedPrinter& result, const TriangleMesh& outer_mes
   }
   std::vector<Vector3d> nodes = result.frame.nodes_mm;
   for (const ExportedSupportNode& node : supports.nodes) nodes.push_back(node.at_mm);
-  const auto add_holder = [&](int i, int j) {
+  const auto add_holder = [&](int i, int j, Held& holds) {  // within M roofs, outside of it undersides
     const Vector3d d = nodes[i] - nodes[j];
     const double degrees = std::atan2(d.head<2>().norm(), std::abs(d.z())) * 180 / std::numbers::pi;
     if (degrees > supports.self_supporting_angle_deg + 1e-6) return;
     const Vector3d& top = d.z() > 0 ? nodes[i] : nodes[j];
-    roofs_held.add(top);
-    undersides_held.add(top);
+    holds.add(top);
   };
   for (const ExportedStrut& s : result.frame.struts)
-    if (!s.skin) add_holder(s.a, s.b);
-  for (const ExportedSupportStrut& s : supports.struts) add_holder(s.upper, s.lower);
+    if (!s.skin) add_holder(s.a, s.b, roofs_held);
+  for (const ExportedSupportStrut& s : supports.struts)
+    add_holder(s.upper, s.lower, s.external ? undersides_held : roofs_held);
 
   double flat = 0, beyond = 0;
   const auto count = [&](const std::vector<Sample>& samples, const Held& held) {

@@ -135,6 +135,7 @@ void FlatSkin::hold(const std::vector<Holder>& holders) {
   std::vector<int> changed;
   for (const Holder& holder : holders)
     for (int i = 0; i < static_cast<int>(cells_.size()); ++i) {
+      if (cells_[i].is_roof != holder.is_within) continue;
       const Vector3d away = holder.at_mm - cells_[i].at_mm;
       if (std::abs(away.z()) > 4 * into_skin_mm_ + pitch_mm_) continue;
       const double beside = std::max(0.0, away.head<2>().norm() - holder.radius_mm);
@@ -176,14 +177,16 @@ std::vector<Holder> holders_of(const Frame& frame, const std::vector<double>& ra
                                const SupportPlan& plan, const PrintableLength& curve) {
   std::vector<Holder> holders;
   const double flattest = self_supporting_angle(curve);
-  const auto add = [&](const Vector3d& a, const Vector3d& b, double radius_mm) {
-    if (angle_from_vertical(a, b) <= flattest) holders.push_back({a.z() > b.z() ? a : b, radius_mm});
+  const auto add = [&](const Vector3d& a, const Vector3d& b, double radius_mm, bool is_within) {
+    if (angle_from_vertical(a, b) <= flattest)
+      holders.push_back({a.z() > b.z() ? a : b, radius_mm, is_within});
   };
   for (std::size_t j = 0; j < frame.struts.size(); ++j)
     if (!frame.struts[j].is_skin)
-      add(frame.nodes_mm[frame.struts[j].a], frame.nodes_mm[frame.struts[j].b], radii_mm[j]);
+      add(frame.nodes_mm[frame.struts[j].a], frame.nodes_mm[frame.struts[j].b], radii_mm[j], true);
   for (const SupportStrut& s : plan.struts)
-    add(node_mm(frame, plan, s.upper), node_mm(frame, plan, s.lower), s.radius_mm);
+    add(node_mm(frame, plan, s.upper), node_mm(frame, plan, s.lower), s.radius_mm,
+        s.kind == SupportKind::kInternal);
   return holders;
 }
 

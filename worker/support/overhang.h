@@ -35,6 +35,7 @@ struct Overhang {
 struct Holder {
   Eigen::Vector3d at_mm = Eigen::Vector3d::Zero();
   double radius_mm = 0;
+  bool is_within = true;  // a strut within M holds roofs, one outside of it undersides
 };
 
 class FlatSkin {

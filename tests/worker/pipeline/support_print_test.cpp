@@ -59,7 +59,8 @@ TEST_P(SupportedBodies, PrintWithoutIslandsAndWithHardlyAnyFreeOverhang) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Samples, SupportedBodies,
-                         testing::Values("ring", "egg", "relief", "bracket", "stool"), [](const auto& body) {
+                         testing::Values("hanging-ball", "ring", "egg", "relief", "bracket", "stool"),
+                         [](const auto& body) {
                            std::string name = body.param;
                            for (char& c : name)
                              if (c == '-') c = '_';

@@ -59,7 +59,7 @@ TEST(Overhang, PointsAreChosenUntilTheWholeRoofIsReached) {
   // The same points as upper ends of struts hold it as well.
   FlatSkin held(box_body(), kBox, bridges_10_mm(), 1.0);
   std::vector<Holder> holders;
-  for (const Eigen::Vector3d& p : points) holders.push_back({p, 0.4});
+  for (const Eigen::Vector3d& p : points) holders.push_back({p, 0.4, true});
   held.hold(holders);
   EXPECT_EQ(held.measure().roof_beyond_mm2, 0.0);
 }
@@ -101,6 +101,14 @@ TEST(Overhang, AnUndersideIsOneOfM) {
   EXPECT_GT(skin.measure().underside_mm2, 300.0);
   EXPECT_EQ(skin.measure().underside_beyond_mm2, skin.measure().underside_mm2);
   EXPECT_EQ(skin.measure().roof_mm2, 0.0);
+}
+
+TEST(Overhang, AStrutWithinMHoldsNoUnderside) {
+  FlatSkin skin(test::table_top(), {{-10, -10, 30}, {10, 10, 32}}, bridges_10_mm(), 1.0);
+  skin.hold({{{0, 0, 31}, 0.4, true}});
+  EXPECT_EQ(skin.measure().underside_beyond_mm2, skin.measure().underside_mm2);
+  skin.hold({{{0, 0, 31}, 0.4, false}});
+  EXPECT_LT(skin.measure().underside_beyond_mm2, skin.measure().underside_mm2);
 }
 
 TEST(Overhang, OnlyStrutsThatSupportThemselvesHoldTheSkin) {
