@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kOrdinarySizeMm = 50;
+constexpr double kOrdinarySizeMm = 60;
 constexpr double kManifestSizeMm = 200;
 constexpr Seconds kLongest{600};
 
