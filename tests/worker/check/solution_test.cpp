@@ -37,7 +37,7 @@ class SolutionTest : public ::testing::Test {
     file.frame_problem = folder_.path() / "problem.json";
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> nowhere(std::tmpfile(), std::fclose);
     EventStream events(nowhere.get());
-    run_frame_job(file, folder_.path(), events, RunContext{});
+    run_frame_job(file, folder_.path(), events, nullptr, RunContext{});
   }
   // The claims that do not hold after `lie` changed the file; the file is as before afterwards.
   Names denied(const char* name, const std::function<void(json&)>& lie) {
