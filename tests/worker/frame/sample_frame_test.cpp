@@ -178,7 +178,7 @@ TEST(SampleFrame, NodesAreDenserWhereTheSolidIsStressed) {
     return low / (low + high);
   };
   const double even = share_below(nullptr);
-  EXPECT_NEAR(even, 0.5, 0.06);
+  EXPECT_NEAR(even, 0.5, 0.08);  // of some 160 nodes, those on the sharp edges placed by length
   EXPECT_GT(share_below(&*stress), even + 0.02);
 }
 

@@ -50,7 +50,8 @@ TEST(BuildSkin, AWallThroughThePointsOfTheGridIsOneSheet) {
   for (auto& v : on_points.vertices) v += Eigen::Vector3d::Constant(0.2);
   for (auto& v : off_points.vertices) v += Eigen::Vector3d::Constant(0.33);
   const Skin on = skin_of(on_points, {.thickness_mm = 1.0}), off = skin_of(off_points, {.thickness_mm = 1.0});
-  EXPECT_NEAR(surface_area(on.inner_surface), 6 * 45.0 * 45.0, 0.01 * 6 * 45 * 45);
+  // The grid cuts the twelve edges by up to a voxel; a second sheet would add as much as there is.
+  EXPECT_NEAR(surface_area(on.inner_surface), 6 * 45.0 * 45.0, 0.03 * 6 * 45 * 45);
   EXPECT_LT(on.inner_surface.triangles.size(), 1.1 * off.inner_surface.triangles.size());
   EXPECT_NEAR(on.cavity_volume_mm3, 45.0 * 45.0 * 45.0, 0.002 * 45 * 45 * 45);
 }
