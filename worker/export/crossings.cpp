@@ -17,9 +17,17 @@ namespace {
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Box = CGAL::Box_intersection_d::Box_with_info_d<float, 3, int>;
 constexpr std::size_t kPairsABatch = 1 << 16;
+// Two on one side that are nearer to folded than this count as lying on each other: slivers are rounded to
+// float, and no program that reads them can tell the difference.
+constexpr double kFoldCosine = -0.99999;
 constexpr double kBoxRounding = 1e-6;  // relative, absolute below 1 mm: more than a turn and a float lose
 
 Kernel::Point_3 point(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+// Not of unit length.
+Eigen::Vector3d normal(const TriangleMesh& mesh, const std::array<int, 3>& c) {
+  return (mesh.vertices[c[1]] - mesh.vertices[c[0]]).cross(mesh.vertices[c[2]] - mesh.vertices[c[0]]);
+}
 
 bool cross(const TriangleMesh& mesh, int s, int t) {
   const auto &p = mesh.triangles[s], &q = mesh.triangles[t];
@@ -42,8 +50,8 @@ bool cross(const TriangleMesh& mesh, int s, int t) {
     return CGAL::do_intersect(Kernel::Segment_3(at(u[0]), at(u[1])), b) ||
            CGAL::do_intersect(Kernel::Segment_3(at(w[0]), at(w[1])), a);
   if (count == 2)
-    return CGAL::coplanar(at(shared[0]), at(shared[1]), at(u[0]), at(w[0])) &&
-           CGAL::coplanar_orientation(at(shared[0]), at(shared[1]), at(u[0]), at(w[0])) == CGAL::POSITIVE;
+    return normal(mesh, p).dot(normal(mesh, q)) <
+           kFoldCosine * normal(mesh, p).norm() * normal(mesh, q).norm();
   return true;  // the same three corners
 }
 
@@ -83,10 +91,7 @@ std::vector<std::pair<int, int>> crossing_triangles(const TriangleMesh& mesh, co
     int shared = 0;
     for (int v : p) shared += std::find(q.begin(), q.end(), v) != q.end();
     if (shared != 2) return false;
-    const auto normal = [&](const std::array<int, 3>& c) -> Eigen::Vector3d {
-      return (mesh.vertices[c[1]] - mesh.vertices[c[0]]).cross(mesh.vertices[c[2]] - mesh.vertices[c[0]]);
-    };
-    return normal(p).dot(normal(q)) > 0.0;
+    return normal(mesh, p).dot(normal(mesh, q)) > 0.0;
   };
   CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
     if (are_flat_neighbours(a.info(), b.info())) return;

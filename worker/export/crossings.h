@@ -11,7 +11,7 @@
 namespace skinframe {
 
 // Triangles that meet beyond the corner or side they share; pairs in ascending order. Of two on one side only
-// the fold flat onto each other counts.
+// the fold onto each other counts, up to a fraction of a degree.
 std::vector<std::pair<int, int>> crossing_triangles(const TriangleMesh& mesh);
 
 // The same among the triangles given by number.
