@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "worker/mechanics/strut_element.h"
+#include "worker/run/ordering_turn.h"
 
 namespace skinframe {
 namespace {
@@ -59,7 +60,9 @@ struct EquilibriumSolver::Impl {
     number_unknowns();
     build_pattern();
     factor.cholmod().print = 0;  // failure is a return value, not a line on the terminal
-    if (unknowns > 0) factor.analyzePattern(stiffness);
+    if (unknowns == 0) return;
+    const OrderingTurn turn;
+    factor.analyzePattern(stiffness);
   }
 
   void number_unknowns() {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "worker/run/ordering_turn.h"
 #include "worker/run/result.h"
 
 namespace skinframe {
@@ -45,6 +46,7 @@ std::vector<int> nested_dissection(const Lists& neighbours) {
   METIS_SetDefaultOptions(options);
   options[METIS_OPTION_SEED] = 1;
   idx_t count = static_cast<idx_t>(blocks);
+  const OrderingTurn turn;
   const int status =
       METIS_NodeND(&count, start.data(), list.data(), nullptr, options, order.data(), inverse.data());
   if (status == METIS_OK) block_at.assign(order.begin(), order.end());

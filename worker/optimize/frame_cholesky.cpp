@@ -5,6 +5,8 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
 
+#include "worker/run/ordering_turn.h"
+
 namespace skinframe {
 namespace {
 
@@ -35,7 +37,9 @@ struct FrameCholesky::Impl {
       }
     build_pattern(struts);
     factor.cholmod().print = 0;
-    if (!full.empty()) factor.analyzePattern(matrix);
+    if (full.empty()) return;
+    const OrderingTurn turn;
+    factor.analyzePattern(matrix);
   }
 
   int unknown_of(const std::pair<int, int>& strut, int local) const {

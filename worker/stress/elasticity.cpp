@@ -8,6 +8,8 @@
 #include <Eigen/Sparse>
 #include <cmath>
 
+#include "worker/run/ordering_turn.h"
+
 namespace skinframe {
 namespace {
 
@@ -109,7 +111,11 @@ Result<std::vector<ElasticResponse>> solve_elasticity(const TetMesh& mesh, const
     if (context.cancelled()) return cancelled_error();
     Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> solver;
     solver.cholmod().print = 0;
-    solver.compute(stiffness);
+    {
+      const OrderingTurn turn;
+      solver.analyzePattern(stiffness);
+    }
+    solver.factorize(stiffness);
     if (solver.info() != Eigen::Success)
       return invalid_input("the tetrahedra are not held by their supports");
     solution = solver.solve(rhs);
