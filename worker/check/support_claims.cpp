@@ -17,14 +17,12 @@ using Eigen::Vector3d;
 
 constexpr double kLengthTolerance = 1e-6;  // relative
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr double kNormalToleranceDegrees = 8;  // of a level set's wall against the mesh's own
-constexpr double kEndInSkins = 2.0;            // about its ends a support stands in the skin
-constexpr double kLevelDegrees = 85;           // flatter struts are exempt from (22)
+constexpr double kNormalToleranceDegrees = 0.5;
+constexpr double kWallReachInSkins = 1.5;  // a node deeper than this is in no wall
+constexpr double kTooNearInSkins = 0.05;   // to the surface to tell how steep it is
+constexpr double kEndInSkins = 2.0;        // about its ends a support stands in the skin
+constexpr double kLevelDegrees = 85;       // flatter struts are exempt from (22)
 constexpr double kSolidBelowInSkins = 4.0;
-// Whether a wall is steep enough to hold a node is told from the mesh here and from the distance field where
-// supports are planned. On so few supports of a curved wall the two may differ.
-constexpr double kDoubtfulShare = 0.04;  // of the supports, on nodes that the mesh's wall would hold
-constexpr double kUnheldShare = 1e-3;    // of the nodes, that the field's wall holds and the mesh's does not
 
 double degrees_from_vertical(const Vector3d& a, const Vector3d& b) {
   const Vector3d d = b - a;
@@ -106,18 +104,17 @@ class Print {
     for (const int node : order) {
       for (const int below : lower[node]) held[node] = held[node] || held[below];
       if (!held[node]) {
-        const bool skin = on_plate(node) || is_foot(node) || in_wall(node, kNormalToleranceDegrees);
+        const bool skin = on_plate(node) || is_foot(node) || held_by_skin(node, Ask::kPossibly);
         by_skin += skin && !on_plate(node);
         held[node] = skin;
       }
       in_the_air += !held[node];
     }
     verdict->claims.push_back(
-        {"every node has a way down",
-         in_the_air <= static_cast<int>(kUnheldShare * static_cast<double>(nodes_.size())),
+        {"every node has a way down", in_the_air == 0,
          fmt::format("{} of {} nodes have no path of printable struts down to the base plane or to skin that "
-                     "holds them ({:g} % may, where a wall is told in two ways); the skin holds {}",
-                     in_the_air, nodes_.size(), 100 * kUnheldShare, by_skin)});
+                     "holds them; the skin holds {}",
+                     in_the_air, nodes_.size(), by_skin)});
   }
 
   void claim_need(Verdict* verdict) const {
@@ -130,7 +127,13 @@ class Print {
           if (from < static_cast<int>(own_) && nodes_[to].z() < nodes_[from].z() - 1e-6) hangs[from] = false;
     int useless = 0;
     for (const ExportedSupportStrut& s : supports_.struts) {
-      bool needed = ways[s.upper] == 1 && !on_plate(s.upper) && !in_wall(s.upper, -kNormalToleranceDegrees);
+      bool needed = ways[s.upper] == 1;
+      if (is_joint(s.upper)) {
+        // What comes down to a joint goes on to the foot, unless it is within a wall that holds it.
+        needed = needed && (s.external || !in_steep_wall(s.upper, Ask::kSurely));
+      } else {
+        needed = needed && !on_plate(s.upper) && !held_by_skin(s.upper, Ask::kSurely);
+      }
       if (s.upper < static_cast<int>(own_)) {
         needed = needed && hangs[s.upper];
       } else if (const int j = supports_.nodes[s.upper - own_].strut; j >= 0) {
@@ -141,13 +144,11 @@ class Print {
       useless += !needed;
     }
     verdict->claims.push_back(
-        {"no support is useless",
-         useless <= static_cast<int>(kDoubtfulShare * static_cast<double>(supports_.struts.size())),
+        {"no support is useless", useless == 0,
          fmt::format(
-             "{} of {} supports end at nodes that a wall seems to hold ({:g} % may, where it is told in two "
-             "ways): without any other one a strut would be longer than prints, or a node would have no "
-             "way down",
-             useless, supports_.struts.size(), 100 * kDoubtfulShare)});
+             "{} of {} supports could go: without any other one a strut would be longer than prints, or a "
+             "node would have no way down",
+             useless, supports_.struts.size())});
   }
 
   void claim_sides(Verdict* verdict) const {
@@ -260,6 +261,9 @@ class Print {
   }
 
  private:
+  // Whether it may be so, as far as two programs agree about a distance, or cannot be otherwise.
+  enum class Ask { kPossibly, kSurely };
+
   bool on_plate(int node) const {
     if (node >= static_cast<int>(own_) && supports_.nodes[node - own_].on == "plate")
       return std::abs(nodes_[node].z() - supports_.plate_z_mm) <= 1e-6;
@@ -271,22 +275,31 @@ class Print {
     const double depth = outer_.depth_mm(nodes_[node]), h = result_.skin_thickness_mm;
     return depth >= -0.6 * h && depth <= 1.1 * h;
   }
-  // The wall at a node is no flatter than the self-supporting angle, or it is solid below.
-  bool in_wall(int node, double tolerance_degrees) const {
+  // Within M, in or at a wall no flatter than the self-supporting angle.
+  bool in_steep_wall(int node, Ask ask) const {
     const Vector3d &p = nodes_[node], q = outer_.nearest(p);
     const double h = result_.skin_thickness_mm, distance = (q - p).norm();
-    const double tolerance = tolerance_degrees > 0 ? 0.2 * h : -0.2 * h;
-    if (distance <= 1.5 * h + tolerance && distance > 0.05 * h) {
-      const double flatness = std::asin(std::clamp(std::abs(q.z() - p.z()) / distance, 0.0, 1.0)) * kDegrees;
-      if (flatness <= supports_.self_supporting_angle_deg + tolerance_degrees) return true;
-    }
-    if (distance <= 0.05 * h && tolerance_degrees > 0) return true;  // too near to tell
-    for (double s = 0.5 * h; s <= kSolidBelowInSkins * h - tolerance; s += 0.25 * h) {
-      const double depth = outer_.depth_mm(p - Vector3d(0, 0, s));
-      if (p.z() - s > supports_.plate_z_mm && (depth > 1.1 * h + tolerance || depth < -0.1 * h - tolerance))
-        return false;
+    const double room = ask == Ask::kPossibly ? 1.0 : -1.0;
+    if (distance <= kTooNearInSkins * h) return ask == Ask::kPossibly;
+    if (outer_.depth_mm(p) < 0.0 || distance > (kWallReachInSkins + 0.01 * room) * h) return false;
+    const double flatness = std::asin(std::clamp(std::abs(q.z() - p.z()) / distance, 0.0, 1.0)) * kDegrees;
+    return flatness <= supports_.self_supporting_angle_deg + room * kNormalToleranceDegrees;
+  }
+  // The material below does not end for kSolidBelowInSkins.
+  bool solid_below(int node, Ask ask) const {
+    const double h = result_.skin_thickness_mm, room = (ask == Ask::kPossibly ? 0.2 : -0.2) * h;
+    for (double s = 0.5 * h; s <= kSolidBelowInSkins * h - room; s += 0.25 * h) {
+      const Vector3d p = nodes_[node] - Vector3d(0, 0, s);
+      const double depth = outer_.depth_mm(p);
+      if (p.z() > supports_.plate_z_mm && (depth > 1.1 * h + room || depth < -0.1 * h - room)) return false;
     }
     return true;
+  }
+  bool held_by_skin(int node, Ask ask) const { return in_steep_wall(node, ask) || solid_below(node, ask); }
+
+  // A node along a support, and nothing that is to be held for its own sake.
+  bool is_joint(int node) const {
+    return node >= static_cast<int>(own_) && supports_.nodes[node - own_].on == "support";
   }
 
   const ExportedPrinter& result_;

@@ -129,8 +129,8 @@ Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting
     fill_statistics(setting, report);
     if (report->reason != Reason::kNone) return std::optional<PrintableMesh>();
 
-    auto supports = plan_print(report->optimised->problem, report->optimised->radii_mm, setting.skin,
-                               setting.printer, context);
+    auto supports = plan_print(report->optimised->problem, report->optimised->radii_mm,
+                               setting.prepared.solid.mesh(), setting.skin, setting.printer, context);
     if (!supports) return supports.error();
     report->supports = std::move(supports).value();
     setting.laps.lap("support");

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "worker/mesh/write_stl.h"
+#include "worker/skin/triangle_tree.h"
 #include "worker/support/overhang.h"
 #include "worker/support/support_mesh.h"
 
@@ -27,7 +28,8 @@ double neck_diameter_mm(const PrinterProfile& printer) {
 double plate_reach_mm(const Skin& skin) { return skin.thickness_mm + kContactToleranceMm; }
 
 Result<std::optional<PlannedSupports>> plan_print(const FrameProblem& problem,
-                                                  const std::vector<double>& radii_mm, const Skin& skin,
+                                                  const std::vector<double>& radii_mm,
+                                                  const TriangleMesh& mesh, const Skin& skin,
                                                   const PrinterProfile& printer, const RunContext& context) {
   if (printer.process != PrintProcess::kExtrusion || !printer.printable_length)
     return std::optional<PlannedSupports>();
@@ -35,7 +37,8 @@ Result<std::optional<PlannedSupports>> plan_print(const FrameProblem& problem,
   options.min_radius_mm = printer.min_radius_mm;
   options.slenderness = problem.material.slenderness;
   options.plate_reach_mm = plate_reach_mm(skin);
-  const PrintedBody body = body_of(skin);
+  const TriangleTree surface(mesh);
+  const PrintedBody body = body_of(skin, surface);
   const PrintableLength& curve = *printer.printable_length;
   const FlatSkin bare(body, skin.body_box_mm, curve, kRoofPitchMm);
   PlannedSupports supports;

@@ -25,9 +25,10 @@ namespace skinframe {
 // Height over the base plane up to which it holds a node of the skin: the skin, and the contact tolerance.
 double plate_reach_mm(const Skin& skin);
 
-// None for printers that need no supports. A warning where (22) does not hold.
+// None for printers that need no supports. mesh: M. A warning where (22) does not hold.
 Result<std::optional<PlannedSupports>> plan_print(const FrameProblem& problem,
-                                                  const std::vector<double>& radii_mm, const Skin& skin,
+                                                  const std::vector<double>& radii_mm,
+                                                  const TriangleMesh& mesh, const Skin& skin,
                                                   const PrinterProfile& printer, const RunContext& context);
 
 // The frame with what of the supports stays, for the merge.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 
 #include "worker/frame/point_tree.h"
@@ -214,21 +215,73 @@ class Planner {
     return ok_status();
   }
 
-  Result<SupportPlan> finish() {
-    for (Support& s : supports_) {
-      const double length = (points_[s.upper] - points_[s.lower]).norm();
+  // A joint of a support within M that stands in a steep wall: what comes down to it needs no more.
+  bool ends_in_wall(const Support& s, int joint) const {
+    return s.kind == SupportKind::kInternal && joint != s.lower &&
+           is_in_steep_wall(body_, points_[joint], flattest_);
+  }
+
+  // The struts of a support, but for those below a wall that carry nothing. `loaded`: nodes that a support
+  // finished before comes down to.
+  std::vector<SupportStrut> struts_of(Support& s, std::vector<bool>& loaded) {
+    std::sort(s.joints.begin(), s.joints.end(),
+              [&](int a, int b) { return points_[a].z() > points_[b].z(); });
+    s.joints.push_back(s.lower);
+    std::vector<SupportStrut> struts;
+    bool carries = true;
+    int upper = s.upper, top = s.upper;  // of this piece, and of the pieces in one with it
+    std::size_t first = 0;
+    const auto size_pieces = [&](int end) {
+      const double length = (points_[top] - points_[end]).norm();
       const double radius =
           std::max(options_.min_radius_mm, options_.slenderness ? length / *options_.slenderness : 0.0);
-      std::sort(s.joints.begin(), s.joints.end(),
-                [&](int a, int b) { return points_[a].z() > points_[b].z(); });
-      int upper = s.upper;
-      s.joints.push_back(s.lower);
-      for (const int next : s.joints) {
-        plan_.struts.push_back({upper, next, s.kind, radius});
-        upper = next;
-      }
+      for (; first < struts.size(); ++first) struts[first].radius_mm = radius;
+    };
+    for (const int next : s.joints) {
+      if (carries) struts.push_back({upper, next, s.kind, 0.0});
+      const bool arrives = carries || loaded[next];
+      const bool held = arrives && ends_in_wall(s, next);
+      if (carries && held) size_pieces(next);
+      if (held) plan_.nodes[next - frame_.nodes_mm.size()].on = On::kSkin;
+      if (!carries && arrives) top = next;
+      carries = arrives && !held;
+      upper = next;
     }
+    if (carries) {
+      size_pieces(s.lower);
+      loaded[s.lower] = true;
+    }
+    return struts;
+  }
+
+  // Later supports end on earlier ones, never the other way round.
+  Result<SupportPlan> finish() {
+    std::vector<bool> loaded(points_.size(), false);
+    std::vector<std::vector<SupportStrut>> struts(supports_.size());
+    for (std::size_t s = supports_.size(); s-- > 0;) struts[s] = struts_of(supports_[s], loaded);
+    for (const auto& list : struts) plan_.struts.insert(plan_.struts.end(), list.begin(), list.end());
+    drop_unused_nodes();
     return std::move(plan_);
+  }
+
+  // Feet and joints that no strut has.
+  void drop_unused_nodes() {
+    const int own = static_cast<int>(frame_.nodes_mm.size());
+    std::vector<bool> used(points_.size(), false);
+    for (const SupportStrut& strut : plan_.struts) used[strut.upper] = used[strut.lower] = true;
+    std::vector<int> renumbered(points_.size());
+    std::iota(renumbered.begin(), renumbered.begin() + own, 0);
+    std::vector<SupportNode> kept;
+    for (int i = own; i < static_cast<int>(points_.size()); ++i) {
+      if (!used[i] && i >= static_cast<int>(first_of_supports_)) continue;
+      renumbered[i] = own + static_cast<int>(kept.size());
+      kept.push_back(plan_.nodes[i - own]);
+    }
+    plan_.nodes = std::move(kept);
+    for (SupportStrut& strut : plan_.struts) {
+      strut.upper = renumbered[strut.upper];
+      strut.lower = renumbered[strut.lower];
+    }
   }
 
   const Frame& frame_;

@@ -5,18 +5,31 @@
 #include <cmath>
 
 #include "worker/skin/build_skin.h"
+#include "worker/skin/triangle_tree.h"
 
 namespace skinframe {
 namespace {
 constexpr double kUniqueNormal = 0.7;      // length of the gradient below which the nearest wall is not one
 constexpr double kWallReachInSkins = 1.5;  // a point deeper than this is in no wall
+constexpr double kTooNearInSkins = 0.05;   // nearer to the surface the way to it has no direction
 constexpr double kFootInSkins = 0.5;       // feet stand that deep in the floor
 }  // namespace
 
 PrintedBody body_of(const Skin& skin) {
   return {[&skin](const Eigen::Vector3d& p) { return -skin.field.at(p); },
-          [&skin](const Eigen::Vector3d& p) { return skin.field.gradient(p); }, skin.thickness_mm,
-          skin.plate_z_mm, skin.voxel_mm};
+          [&skin](const Eigen::Vector3d& p) { return skin.field.gradient(p); },
+          skin.thickness_mm,
+          skin.plate_z_mm,
+          skin.voxel_mm,
+          {}};
+}
+
+PrintedBody body_of(const Skin& skin, const TriangleTree& surface) {
+  PrintedBody body = body_of(skin);
+  body.to_surface_mm = [&surface](const Eigen::Vector3d& p) -> Eigen::Vector3d {
+    return surface.nearest(p) - p;
+  };
+  return body;
 }
 
 std::optional<Footing> footing_below(const PrintedBody& body, const Eigen::Vector3d& point) {
@@ -65,10 +78,16 @@ std::optional<SupportKind> side_of_segment(const PrintedBody& body, const Eigen:
 }
 
 bool is_in_steep_wall(const PrintedBody& body, const Eigen::Vector3d& point, double angle_rad) {
-  if (std::abs(body.depth_mm(point)) > kWallReachInSkins * body.skin_thickness_mm) return false;
-  const Eigen::Vector3d out = body.outward(point);
-  const double length = out.norm();
-  return length >= kUniqueNormal && std::abs(out.z()) <= std::sin(angle_rad) * length;
+  const double depth = body.depth_mm(point), h = body.skin_thickness_mm;
+  if (depth < 0.0) return false;
+  Eigen::Vector3d way = Eigen::Vector3d::Zero();
+  if (body.to_surface_mm) way = body.to_surface_mm(point);
+  if (way.norm() <= kTooNearInSkins * h) {
+    const Eigen::Vector3d out = body.outward(point);
+    if (out.norm() < kUniqueNormal) return false;
+    way = std::max(depth, kTooNearInSkins * h) * out.normalized();
+  }
+  return way.norm() <= kWallReachInSkins * h && std::abs(way.z()) <= std::sin(angle_rad) * way.norm();
 }
 
 }  // namespace skinframe

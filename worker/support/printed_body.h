@@ -12,6 +12,7 @@
 namespace skinframe {
 
 struct Skin;
+class TriangleTree;
 
 struct PrintedBody {
   std::function<double(const Eigen::Vector3d&)> depth_mm;          // below the surface of M, negative outside
@@ -20,10 +21,14 @@ struct PrintedBody {
   double skin_thickness_mm = 1;
   double plate_z_mm = 0;
   double step_mm = 0.5;  // of walks along a line
+  // From a point to the nearest one of M's surface: what tells how steep the wall there is. Set: exact, while
+  // the two above are of a distance field; not set: as far along `outward` as the point is deep.
+  std::function<Eigen::Vector3d(const Eigen::Vector3d&)> to_surface_mm = {};
 };
 
-// The skin must outlive it.
+// The skin must outlive it, and the surface of M where it is given.
 PrintedBody body_of(const Skin& skin);
+PrintedBody body_of(const Skin& skin, const TriangleTree& surface);
 
 // Where an upright line from a point downwards first meets something to stand on.
 struct Footing {
@@ -41,7 +46,8 @@ std::optional<SupportKind> side_of_segment(const PrintedBody& body, const Eigen:
                                            const Eigen::Vector3d& lower);
 inline constexpr double kEndInSkins = 2.0;
 
-// The wall at a point is no flatter than the angle from the vertical: it holds itself and what is in it.
+// The point stands within M, in or at a wall that is no flatter than the angle from the vertical: the wall
+// holds itself and what is in it.
 bool is_in_steep_wall(const PrintedBody& body, const Eigen::Vector3d& point, double angle_rad);
 
 }  // namespace skinframe

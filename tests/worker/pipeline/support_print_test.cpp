@@ -41,7 +41,7 @@ TEST_P(SupportedBodies, PrintWithoutIslandsAndWithHardlyAnyFreeOverhang) {
   problem.displacement_limit_mm = 0.05;
   const std::vector<double> radii_mm(problem.frame.struts.size(), printer.min_radius_mm);
 
-  const auto supports = plan_print(problem, radii_mm, *skin, printer, context);
+  const auto supports = plan_print(problem, radii_mm, prepared->solid.mesh(), *skin, printer, context);
   ASSERT_TRUE(supports.ok() && supports->has_value());
   const PlannedSupports& planned = **supports;
   EXPECT_TRUE(planned.state.holds());
