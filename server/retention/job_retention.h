@@ -3,24 +3,17 @@
 // nobody refers to them any more.
 #pragma once
 
-#include "server/leases/duty.h"
-#include "server/store/job_store.h"
+#include "server/retention/aged_sweep.h"
 
 namespace skinframe::server {
 
-class JobRetention final : public Duty {
+class JobRetention final : public AgedSweep {
  public:
-  // keep > 0: for so long after its end a job is kept. Looks when `every` has passed since the last look.
-  JobRetention(JobStore& store, Milliseconds keep, Milliseconds every)
-      : store_(store), keep_(keep), every_(every) {}
+  using AgedSweep::AgedSweep;
   std::string_view name() const override { return "job retention"; }
-  absl::Status run_once(Time now) override;
 
  private:
-  JobStore& store_;
-  const Milliseconds keep_;
-  const Milliseconds every_;
-  Time looked_{};
+  absl::StatusOr<bool> sweep(JobStore& store, Time ended_before) override;
 };
 
 }  // namespace skinframe::server

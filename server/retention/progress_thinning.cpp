@@ -6,12 +6,10 @@ namespace {
 constexpr int kMostAtOnce = 5;  // one transaction, behind which every other write waits
 }
 
-absl::Status ProgressThinning::run_once(Time now) {
-  if (now >= looked_ && now - looked_ < every_) return absl::OkStatus();
-  const auto thinned = store_.thin_progress(now - keep_, kMostAtOnce);
+absl::StatusOr<bool> ProgressThinning::sweep(JobStore& store, Time ended_before) {
+  const auto thinned = store.thin_progress(ended_before, kMostAtOnce);
   if (!thinned.ok()) return thinned.status();
-  if (*thinned < kMostAtOnce) looked_ = now;  // else the rest has its turn in the next round
-  return absl::OkStatus();
+  return *thinned < kMostAtOnce;
 }
 
 }  // namespace skinframe::server

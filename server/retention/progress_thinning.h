@@ -3,25 +3,17 @@
 // nobody reads again. Changes of state and results of printers stay for as long as the job.
 #pragma once
 
-#include "server/leases/duty.h"
-#include "server/store/job_store.h"
+#include "server/retention/aged_sweep.h"
 
 namespace skinframe::server {
 
-class ProgressThinning final : public Duty {
+class ProgressThinning final : public AgedSweep {
  public:
-  // keep > 0: for so long after a job's end its progress is kept. Looks when `every` has passed since the
-  // last look.
-  ProgressThinning(JobStore& store, Milliseconds keep, Milliseconds every)
-      : store_(store), keep_(keep), every_(every) {}
+  using AgedSweep::AgedSweep;
   std::string_view name() const override { return "progress thinning"; }
-  absl::Status run_once(Time now) override;
 
  private:
-  JobStore& store_;
-  const Milliseconds keep_;
-  const Milliseconds every_;
-  Time looked_{};
+  absl::StatusOr<bool> sweep(JobStore& store, Time ended_before) override;
 };
 
 }  // namespace skinframe::server
