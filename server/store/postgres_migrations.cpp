@@ -3,6 +3,8 @@
 
 #include <array>
 
+#include "server/store/common_migrations.h"
+
 namespace skinframe::server {
 namespace {
 
@@ -59,34 +61,12 @@ CREATE TABLE events (
 CREATE SEQUENCE fencing_tokens;
 )sql";
 
-// For the retention of ended jobs.
-constexpr char kEndedIndex[] = "CREATE INDEX jobs_ended ON jobs (end_ms) WHERE state > 2";
+// Where a job stands in its queue, ms.
+constexpr char kRankColumn[] = "ALTER TABLE jobs ADD COLUMN rank_ms BIGINT NOT NULL DEFAULT 0";
 
-// Tenants, and within each a queue in the order of rank_ms; earlier results by what they were asked for;
-// events of progress, which may go, told from those that stay.
-constexpr char kTenants[] = R"sql(
-ALTER TABLE jobs ADD COLUMN tenant TEXT NOT NULL DEFAULT 'default';
-ALTER TABLE jobs ADD COLUMN rank_ms BIGINT NOT NULL DEFAULT 0;
-ALTER TABLE jobs ADD COLUMN reuse_key TEXT;
-ALTER TABLE jobs ADD COLUMN thinned INTEGER NOT NULL DEFAULT 0;
-ALTER TABLE events ADD COLUMN progress INTEGER NOT NULL DEFAULT 0;
-UPDATE jobs SET rank_ms = create_ms - priority * 600000;
-DROP INDEX jobs_queue;
-DROP INDEX jobs_deadline;
-DROP INDEX jobs_lease;
-DROP INDEX jobs_state;
-CREATE INDEX jobs_queue    ON jobs (tenant, rank_ms, ordinal) WHERE state = 1;
-CREATE INDEX jobs_deadline ON jobs (state, deadline_ms) WHERE deadline_ms IS NOT NULL;
-CREATE INDEX jobs_lease    ON jobs (state, lease_expires_ms) WHERE state = 2;
-CREATE INDEX jobs_state    ON jobs (state, tenant, ordinal);
-CREATE INDEX jobs_reuse    ON jobs (tenant, reuse_key, ordinal) WHERE state = 3 AND reuse_key IS NOT NULL;
-CREATE INDEX jobs_thin     ON jobs (end_ms) WHERE state > 2 AND thinned = 0;
-CREATE INDEX jobs_tenant   ON jobs (tenant, ordinal);
-)sql";
-
-constexpr std::array kMigrations = {Migration{1, "jobs and events", kJobsAndEvents},
-                                    Migration{2, "index of ended jobs", kEndedIndex},
-                                    Migration{3, "tenants, ranks, reuse, thinning", kTenants}};
+constexpr std::array kMigrations = {
+    Migration{1, "jobs and events", kJobsAndEvents}, Migration{2, "index of ended jobs", kEndedIndex},
+    Migration{3, "rank in the queue", kRankColumn}, Migration{4, "tenants, reuse, thinning", kTenants}};
 
 }  // namespace
 
