@@ -38,27 +38,6 @@ TEST_F(Drain, AnUploadUnderWayIsFinishedAndKeptWhileNothingNewIsTaken) {
   EXPECT_EQ(upload(header(content), {}).error_code(), grpc::StatusCode::OK) << "it is there already";
 }
 
-TEST_F(Drain, AWatchEndsWithAStatusThatSaysToGoOnAndLosesNothing) {
-  const std::string id = submit();
-  grpc::ClientContext context;
-  set_deadline(context);
-  v1::WatchJobRequest request;
-  request.set_job_id(id);
-  const auto reader = jobs_->WatchJob(&context, request);
-  v1::JobEvent event;
-  ASSERT_TRUE(reader->Read(&event));
-  EXPECT_EQ(event.sequence(), 1);
-  server_->stop();
-  EXPECT_FALSE(reader->Read(&event));
-  EXPECT_EQ(reader->Finish().error_code(), grpc::StatusCode::UNAVAILABLE);
-  restart();
-  ASSERT_TRUE(complete(outcome(lease(), v1::JOB_STATE_FAILED, v1::REASON_INFEASIBLE)).ok());
-  std::vector<v1::JobEvent> rest;
-  EXPECT_TRUE(watch(id, 1, &rest).ok());
-  ASSERT_EQ(rest.size(), 2u);
-  EXPECT_EQ(rest[0].sequence(), 2);
-}
-
 TEST_F(Drain, ThinnedProgressEndsAWatchWithTheNumberWhereItGoesOn) {
   const std::string id = submit();
   const v1::Assignment work = lease();
