@@ -3,33 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 
 #include "worker/problem/problem_file.h"
 #include "worker/problem/proof_json.h"
+#include "worker/run/bytes.h"
 
 namespace skinframe {
 namespace {
 
 using nlohmann::json;
-
-// FNV-1a over 64 bits: tells frames of one mesh apart, and guards against no forger.
-class Key {
- public:
-  template <class T>
-  void add(const T* values, std::size_t count) {
-    const auto* bytes = reinterpret_cast<const unsigned char*>(values);
-    for (std::size_t i = 0; i < count * sizeof(T); ++i) hash_ = (hash_ ^ bytes[i]) * 0x100000001b3ULL;
-  }
-  void add(double value) { add(&value, 1); }
-  void add(const std::string& text) { add(text.data(), text.size()); }
-  std::string hex() const { return fmt::format("{:016x}", hash_); }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325ULL;
-};
 
 json vectors_json(const std::vector<Eigen::Vector3d>& vectors) {
   json list = json::array();
@@ -112,19 +97,22 @@ ReducedFrame parse_reduced(const json& reduced, const Frame& sampled) {
 }  // namespace
 
 std::string sampling_key(const Skin& skin, const FrameOptions& options, const RunContext& context) {
-  Key key;
-  key.add(std::string(SKINFRAME_VERSION));
-  key.add(static_cast<double>(skin.inner_surface.vertices.size()));
-  for (const Eigen::Vector3d& vertex : skin.inner_surface.vertices) key.add(vertex.data(), 3);
-  for (const auto& triangle : skin.inner_surface.triangles) key.add(triangle.data(), 3);
-  for (const double value :
-       {skin.thickness_mm, skin.voxel_mm, skin.plate_z_mm, skin.cavity_volume_mm3, skin.volume_mm3,
-        static_cast<double>(options.skin_nodes.value_or(-1)),
-        static_cast<double>(options.internal_nodes.value_or(-1)), options.strut_radius_mm,
-        options.contact_tolerance_mm, static_cast<double>(options.neighbours)})
-    key.add(value);
-  key.add(&context.seed, 1);
-  return key.hex();
+  std::string version = SKINFRAME_VERSION;
+  auto [vertices, triangles] = std::pair(skin.inner_surface.vertices, skin.inner_surface.triangles);
+  std::array values = {skin.thickness_mm,
+                       skin.voxel_mm,
+                       skin.plate_z_mm,
+                       skin.cavity_volume_mm3,
+                       skin.volume_mm3,
+                       static_cast<double>(options.skin_nodes.value_or(-1)),
+                       static_cast<double>(options.internal_nodes.value_or(-1)),
+                       options.strut_radius_mm,
+                       options.contact_tolerance_mm,
+                       static_cast<double>(options.neighbours)};
+  std::uint64_t seed = context.seed;
+  ByteWriter bytes;
+  bytes(version, vertices, triangles, values, seed);
+  return fingerprint(bytes.take());
 }
 
 json initial_frame_json(const FrameProblem& posed, const SampledFrame& sampled, const std::string& density,
