@@ -164,14 +164,17 @@ void claim_solid(const ExportedPrinter& result, const TriangleMesh& outer_mesh, 
            "{} triangles, {} of them the input's; total {:.1f} of {:.1f} mm3; {} nodes, {} struts reported",
            result.merged->triangles.size(), outer_mesh.triangles.size(), result.total_volume_mm3, solid,
            result.final_nodes, result.final_struts)});
-  const SkinSample skin =
-      sample_skin_volume(outer, bounding_box(outer_mesh), result.skin_thickness_mm, solid);
+  // A hollow is cut from a grid: a slit thinner than its voxel is none.
+  const double deepest_mm = result.skin_thickness_mm + 0.5 * result.voxel_mm;
+  const SkinSample skin = sample_skin_volume(outer, bounding_box(outer_mesh), deepest_mm, solid);
   const double deep = 1.0 - skin.volume_mm3 / solid;
   constexpr double kMostHollow = 0.015;  // of the volume; a body is called thin everywhere below 0.01
   verdict->claims.push_back(
       {"thin everywhere", deep <= kMostHollow + skin.error_mm3 / solid,
-       fmt::format("{:.4f} of the volume lies deeper than the skin of {:.3g} mm (at most {})", deep,
-                   result.skin_thickness_mm, kMostHollow)});
+       fmt::format(
+           "{:.4f} of the volume lies deeper than the skin of {:.3g} mm and half a voxel of {:.2g} mm "
+           "(at most {})",
+           deep, result.skin_thickness_mm, result.voxel_mm, kMostHollow)});
 }
 
 }  // namespace skinframe::check

@@ -72,6 +72,13 @@ TEST(Pipeline, ABodyThinEverywhereComesBackSolidWithAWarning) {
   auto verdicts = check::check_directory(folder.path() / "out", context);
   ASSERT_TRUE(verdicts.ok()) << verdicts.error().message;
   EXPECT_TRUE(verdicts->front().holds()) << check::to_text(*verdicts);
+
+  json lie = read_json(folder.path() / "out" / "report.json");
+  lie["printers"][0]["profile"]["skin_thickness_mm"] = 0.4;  // half of it would be hollow
+  std::ofstream(folder.path() / "out" / "report.json") << lie;
+  verdicts = check::check_directory(folder.path() / "out", context);
+  ASSERT_TRUE(verdicts.ok()) << verdicts.error().message;
+  EXPECT_FALSE(verdicts->front().holds()) << check::to_text(*verdicts);
 }
 
 TEST(Pipeline, AThinSheetIsToldSolidAndWithoutInternalNodes) {
