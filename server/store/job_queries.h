@@ -81,14 +81,20 @@ absl::StatusOr<std::vector<TenantLoad>> tenant_loads(Database& database) {
   return loads;
 }
 
+// Parameters: a tenant, now.
+template <class Database>
+std::string first_queued_sql() {
+  return fmt::format(
+      "SELECT {} FROM jobs WHERE state = 1 AND tenant = ? AND not_before_ms <= ? ORDER BY rank_ms, ordinal "
+      "LIMIT 1{}",
+      kJobColumns, Database::kSkipLocked);
+}
+
 // The tenant's first job that may run now, locked where the store locks rows. Nothing: there is none, or
 // others hold those that there are.
 template <class Database>
 absl::StatusOr<std::optional<JobRow>> first_queued(Database& database, const std::string& tenant, Time now) {
-  typename Database::Statement first(database,
-                                     fmt::format("SELECT {} FROM jobs WHERE state = 1 AND tenant = ? "
-                                                 "AND not_before_ms <= ? ORDER BY rank_ms, ordinal LIMIT 1{}",
-                                                 kJobColumns, Database::kSkipLocked));
+  typename Database::Statement first(database, first_queued_sql<Database>());
   if (first.bind_text(tenant).bind(to_ms(now)).step()) {
     auto row = read_row(first);
     if (!row.ok()) return row.status();

@@ -2,6 +2,7 @@
 // What is particular to PostgreSQL: several servers on one database, and a database that goes away.
 #include "server/store/postgres_store.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <condition_variable>
@@ -9,8 +10,10 @@
 #include <set>
 #include <thread>
 
+#include "server/store/job_queries.h"
 #include "server/store/postgres_migrations.h"
 #include "server/store/postgres_news.h"
+#include "server/store/postgres_session.h"
 #include "tests/server/fixture/example_job.h"
 #include "tests/server/store/store_factory.h"
 
@@ -70,6 +73,31 @@ std::unique_ptr<JobStore> open_at(const std::string& where, CommitListener* list
 absl::StatusOr<std::optional<JobRecord>> lease(JobStore& store) {
   return store.lease_next(kNoon,
                           [](const JobRecord& job, std::int64_t token) { return leased(job, token, kNoon); });
+}
+
+TEST(PostgresStore, ALeaseWalksTheIndexAlsoWhenTheStatisticsKnowOfNoQueuedJob) {
+  const std::string where = shared_postgres().new_database();
+  open_at(where);
+  const auto session = *PostgresSession::open(where);
+  const auto add = [&](int first, int last, int state) {
+    return session->execute(fmt::format(
+        "INSERT INTO jobs (job_id, spec_digest, spec, profiles, priority, create_ms, state, reason, detail, "
+        "results, attempt, lost_attempts, not_before_ms, cancel_requested, last_sequence, fencing_token, "
+        "worker_id, instance_id, lease_expires_ms, completion_digest, rank_ms, tenant) "
+        "SELECT 'j' || i, '', '', '', 0, i, {}, 0, '', '', 0, 0, 0, 0, 0, 0, '', '', 0, '', i, 't' || i % 10 "
+        "FROM generate_series({}, {}) i",
+        state, first, last));
+  };
+  ASSERT_TRUE(add(1, 5000, v1::JOB_STATE_SUCCEEDED).ok());
+  ASSERT_TRUE(session->execute("ANALYZE jobs").ok());
+  ASSERT_TRUE(add(5001, 25000, v1::JOB_STATE_QUEUED).ok());
+  PostgresStatement explain(*session, "EXPLAIN " + first_queued_sql<PostgresSession>());
+  std::string plan;
+  explain.bind_text("t3").bind(std::int64_t{0});
+  while (explain.step()) plan += explain.bytes(0) + "\n";
+  ASSERT_TRUE(explain.status().ok()) << explain.status();
+  EXPECT_NE(plan.find("Index Scan using jobs_queue"), std::string::npos) << plan;
+  EXPECT_EQ(plan.find("Sort"), std::string::npos) << plan;
 }
 
 TEST(PostgresStore, AServerHearsOfChangesOfStateMadeThroughAnotherAndNotOfItsOwn) {
