@@ -8,17 +8,14 @@
 #include <optional>
 #include <string>
 
+#include "skinframe/v1/status.pb.h"
+
 namespace skinframe::client {
 namespace {
 
 constexpr std::chrono::milliseconds kLongestAskedDelay{30'000};
 
-// Trailing metadata "retry-after-ms" of a full queue.
-std::optional<std::chrono::milliseconds> asked_delay(const grpc::ClientContext& context) {
-  const auto value = trailing_number(context, "retry-after-ms");
-  if (!value) return std::nullopt;
-  return std::min(std::chrono::milliseconds(std::min<std::int64_t>(*value, 1'000'000)), kLongestAskedDelay);
-}
+constexpr char kRetryInfo[] = "type.googleapis.com/google.rpc.RetryInfo";
 
 bool may_help(const grpc::Status& status, const RetryPolicy& policy, bool delay_is_named) {
   return status.error_code() == grpc::StatusCode::UNAVAILABLE ||
@@ -35,6 +32,19 @@ std::string last_part(const std::string& message) {
 grpc::Status interrupted() { return {grpc::StatusCode::CANCELLED, "interrupted"}; }
 
 }  // namespace
+
+std::optional<std::chrono::milliseconds> asked_delay(const grpc::Status& status) {
+  v1::StatusDetails details;
+  if (status.error_details().empty() || !details.ParseFromString(status.error_details())) return std::nullopt;
+  for (const google::protobuf::Any& detail : details.details()) {
+    v1::RetryInfo retry;
+    if (detail.type_url() != kRetryInfo || !retry.ParseFromString(detail.value())) continue;
+    const auto seconds = std::clamp<std::int64_t>(retry.retry_delay().seconds(), 0, 3600);
+    const std::chrono::milliseconds delay(seconds * 1000 + retry.retry_delay().nanos() / 1'000'000);
+    return std::clamp(delay, std::chrono::milliseconds(0), kLongestAskedDelay);
+  }
+  return std::nullopt;
+}
 
 std::optional<std::int64_t> trailing_number(const grpc::ClientContext& context, const char* key) {
   const auto& metadata = context.GetServerTrailingMetadata();
@@ -71,12 +81,8 @@ grpc::Status call_with_retries(const Connection& connection, const RetryPolicy& 
                                const Attempt& attempt) {
   Backoff backoff(policy.first, policy.longest);
   for (int left = policy.attempts; !connection.stop.stop_requested();) {
-    std::optional<std::chrono::milliseconds> asked;
-    const grpc::Status status = call_once(connection, policy.deadline, [&](grpc::ClientContext& context) {
-      grpc::Status answer = attempt(context);
-      if (answer.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED) asked = asked_delay(context);
-      return answer;
-    });
+    const grpc::Status status = call_once(connection, policy.deadline, attempt);
+    const auto asked = asked_delay(status);
     if (--left <= 0 || !may_help(status, policy, asked.has_value())) return status;
     const auto delay = backoff.next();
     if (!connection.clock->wait(std::max(delay, asked.value_or(delay)), connection.stop)) break;

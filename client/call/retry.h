@@ -34,12 +34,17 @@ struct RetryPolicy {
   std::chrono::milliseconds first{100};        // delay after the first
   std::chrono::milliseconds longest{2000};     // delay at most
   std::chrono::milliseconds deadline{30'000};  // of one attempt
-  bool queue_full = false;  // RESOURCE_EXHAUSTED too, where the server names a delay: not sooner than that
+  bool queue_full = false;                     // RESOURCE_EXHAUSTED too, where the server names a delay
 };
 
 using Attempt = std::function<grpc::Status(grpc::ClientContext&)>;
 
-// Runs attempts until one gives something that trying again cannot mend. CANCELLED when stopped.
+// How long the server asks to wait before the next attempt (RetryInfo, skinframe/v1/status.proto), at most 30
+// s; nothing: it does not say. An answer of another server's making is no reason to fail.
+std::optional<std::chrono::milliseconds> asked_delay(const grpc::Status& status);
+
+// Runs attempts until one gives something that trying again cannot mend, none sooner than the server asks.
+// CANCELLED when stopped.
 grpc::Status call_with_retries(const Connection& connection, const RetryPolicy& policy,
                                const Attempt& attempt);
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -16,6 +17,12 @@ namespace {
 constexpr std::chrono::hours kStreamDeadline{24 * 30};
 
 enum class Seen { kNothing, kEvents, kFinalState, kEnough };
+
+// The server is away, or has as many watches as it takes.
+bool may_come_back(const grpc::Status& status) {
+  return status.error_code() == grpc::StatusCode::UNAVAILABLE ||
+         (status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED && asked_delay(status).has_value());
+}
 
 class Watch {
  public:
@@ -113,7 +120,7 @@ Done watch_job(const Connection& connection, const std::string& job_id, const Wa
       const auto ended = watch.ended_already();
       if (ended && *ended) return done();
       if (!ended && ended.failure().kind != FailureKind::kUnreachable) return ended.failure();
-    } else if (status.error_code() != grpc::StatusCode::UNAVAILABLE) {
+    } else if (!may_come_back(status)) {
       return to_failure(status, connection);
     }
     if (seen == Seen::kEvents) {
@@ -124,7 +131,8 @@ Done watch_job(const Connection& connection, const std::string& job_id, const Wa
     if (connection.clock->now() - last_sign >= options.patience) return to_failure(status, connection);
     if (!lost && !status.ok()) options.on_lost();
     lost = true;
-    if (!connection.clock->wait(backoff.next(), connection.stop)) {
+    const auto delay = backoff.next();
+    if (!connection.clock->wait(std::max(delay, asked_delay(status).value_or(delay)), connection.stop)) {
       return Failure{FailureKind::kInterrupted, "interrupted"};
     }
   }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "client/call/retry.h"
@@ -81,7 +82,8 @@ Result<FileDigest> upload_input(const Connection& connection, const std::filesys
       return Failure{FailureKind::kInput, fmt::format("{}: {}", path.string(), status.error_message())};
     }
     if (!worth_another(status) || left == 1) return to_failure(status, connection);
-    if (!connection.clock->wait(backoff.next(), connection.stop)) break;
+    const auto delay = backoff.next();
+    if (!connection.clock->wait(std::max(delay, asked_delay(status).value_or(delay)), connection.stop)) break;
   }
   return Failure{FailureKind::kInterrupted, "interrupted"};
 }

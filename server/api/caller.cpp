@@ -6,6 +6,8 @@
 #include <optional>
 #include <string_view>
 
+#include "server/api/answer.h"
+
 namespace skinframe::server {
 namespace {
 
@@ -72,10 +74,10 @@ absl::Status Shelf::permit_upload(const Parts& parts, const std::string& sha256,
   const auto used = store->bytes_used();
   if (!used.ok()) return used.status();
   if (size_bytes <= quota - *used) return absl::OkStatus();
-  return absl::ResourceExhaustedError(fmt::format(
+  return waiting_does_not_help(absl::ResourceExhaustedError(fmt::format(
       "tenant \"{}\" has {} bytes of artifacts and may have {}, its quota of artifact bytes; delete "
       "jobs that are not needed any more: their files go a day later",
-      tenant, *used, quota));
+      tenant, *used, quota)));
 }
 
 absl::StatusOr<Shelf> shelf_of(const Parts& parts, const grpc::CallbackServerContext& context) {

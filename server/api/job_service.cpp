@@ -21,7 +21,6 @@ constexpr int kDefaultPage = 50;
 constexpr int kLargestPage = 500;
 constexpr std::size_t kLargestPageBytes = std::size_t{3}
                                           << 20;  // below gRPC's default limit of 4 MiB a message
-constexpr char kRetryAfterMs[] = "1000";
 
 // A page token is the ordinal of the page's last job. 0: the first page; -1: not one of ours.
 std::int64_t parse_page_token(const std::string& token) {
@@ -77,8 +76,6 @@ absl::Status JobService::submit(grpc::CallbackServerContext& context, const v1::
                                 : decide_submit(std::move(record), now, parts_.policy);
   auto created =
       parts_.store.create(change, {parts_.queue_limit, parts_.tenants.rule_of(*tenant).most_queued});
-  if (absl::IsResourceExhausted(created.status()))
-    context.AddTrailingMetadata("retry-after-ms", kRetryAfterMs);
   if (!created.ok()) return created.status();
   *response.mutable_job() = std::move(created->record.job);
   if (response.job().state() == v1::JOB_STATE_QUEUED) {

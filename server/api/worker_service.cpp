@@ -82,7 +82,11 @@ grpc::ServerUnaryReactor* WorkerService::Checkpoint(grpc::CallbackServerContext*
                                                     v1::CheckpointResponse*) {
   return answer_on(
       parts_.executor, context,
-      [=, this] { return log_refusal(checkpoint(*request), request->job_id(), "checkpoint"); },
+      [=, this] {
+        const absl::Status permitted = permit_work(parts_, *context);
+        return permitted.ok() ? log_refusal(checkpoint(*request), request->job_id(), "checkpoint")
+                              : permitted;
+      },
       request->job_id());
 }
 

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "skinframe/v1/job.grpc.pb.h"
+#include "skinframe/v1/status.pb.h"
 
 namespace skinframe::fake {
 
@@ -23,7 +24,7 @@ class FakeJobs final : public v1::JobService::Service {
   std::vector<std::size_t> break_after;    // events before the k-th stream breaks; none: it stays whole
   std::vector<v1::SubmitJobRequest> submissions;  // each attempt
   std::vector<grpc::Status> refusals;             // of the first submissions
-  bool name_delay = true;                         // with a refusal
+  bool name_delay = true;                         // of 1.234 s, with a refusal
   std::string authorization;                      // metadata of the last submission
   bool tell_of_gaps = false;                      // where events are missing
   bool hang = false;               // watches stay open after their events, and CancelJob does not answer
@@ -57,8 +58,8 @@ class FakeJobs final : public v1::JobService::Service {
         it != context->client_metadata().end())
       authorization.assign(it->second.data(), it->second.size());
     if (submissions.size() <= refusals.size()) {
-      if (name_delay) context->AddTrailingMetadata("retry-after-ms", "1234");
-      return refusals[submissions.size() - 1];
+      const grpc::Status& refusal = refusals[submissions.size() - 1];
+      return name_delay ? with_delay(refusal) : refusal;
     }
     *response->mutable_job() = job;
     return grpc::Status::OK;
@@ -103,6 +104,20 @@ class FakeJobs final : public v1::JobService::Service {
   }
 
  private:
+  // As Google's own libraries write it.
+  static grpc::Status with_delay(const grpc::Status& refusal) {
+    v1::RetryInfo retry;
+    retry.mutable_retry_delay()->set_seconds(1);
+    retry.mutable_retry_delay()->set_nanos(234'000'000);
+    v1::StatusDetails details;
+    details.set_code(refusal.error_code());
+    details.set_message(refusal.error_message());
+    details.add_details()->set_type_url(
+        "type.googleapis.com/google.rpc.Help");  // some other detail before it
+    details.add_details()->set_type_url("type.googleapis.com/google.rpc.RetryInfo");
+    details.mutable_details(1)->set_value(retry.SerializeAsString());
+    return {refusal.error_code(), refusal.error_message(), details.SerializeAsString()};
+  }
   void until_hung_up(grpc::ServerContext& context, std::unique_lock<std::mutex>& lock, int& hanging) {
     ++hanging;
     called.notify_all();

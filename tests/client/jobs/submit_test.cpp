@@ -37,6 +37,12 @@ TEST_F(SubmitJob, AFullQueueIsAskedAgainAfterTheDelayThatTheServerNames) {
   EXPECT_THAT(clock_.waits, testing::ElementsAre(milliseconds(1234)));
 }
 
+TEST_F(SubmitJob, AServerThatIsAwayForAMomentIsGivenTheTimeItAsksFor) {
+  jobs_.refusals = {{grpc::StatusCode::UNAVAILABLE, "the server stops"}};
+  ASSERT_TRUE(submit_job(connection_, {}).ok());
+  EXPECT_THAT(clock_.waits, testing::ElementsAre(milliseconds(1234)));
+}
+
 TEST_F(SubmitJob, AQuotaThatWaitingDoesNotMendIsToldAtOnce) {
   jobs_.refusals = {{grpc::StatusCode::RESOURCE_EXHAUSTED, "quota of artifact bytes"}};
   jobs_.name_delay = false;
@@ -79,6 +85,24 @@ TEST(Unreachable, TheSentenceNamesTheAddressAndTheRemedy) {
   EXPECT_EQ(job.failure().kind, FailureKind::kUnreachable);
   EXPECT_THAT(job.failure().message,
               testing::AllOf(testing::HasSubstr("127.0.0.1:1"), testing::HasSubstr("skinframe-server")));
+}
+
+// What a server of another make may send: bounded, and never a reason to fail.
+TEST(AskedDelay, IsTakenFromWellFormedDetailsAndBounded) {
+  const auto asked = [](std::int64_t seconds, std::int32_t nanos) {
+    v1::RetryInfo retry;
+    retry.mutable_retry_delay()->set_seconds(seconds);
+    retry.mutable_retry_delay()->set_nanos(nanos);
+    v1::StatusDetails details;
+    details.add_details()->set_type_url("type.googleapis.com/google.rpc.RetryInfo");
+    details.mutable_details(0)->set_value(retry.SerializeAsString());
+    return asked_delay({grpc::StatusCode::UNAVAILABLE, "", details.SerializeAsString()});
+  };
+  EXPECT_EQ(asked(2, 500'000'000), milliseconds(2500));
+  EXPECT_EQ(asked(INT64_MAX, 999'999'999), milliseconds(30'000));
+  EXPECT_EQ(asked(INT64_MIN, -1), milliseconds(0));
+  EXPECT_FALSE(asked_delay({grpc::StatusCode::UNAVAILABLE, "no details"}));
+  EXPECT_FALSE(asked_delay({grpc::StatusCode::UNAVAILABLE, "", "\xff no message"}));
 }
 
 TEST(BackoffTest, DoublesUpToItsLongestAndKeepsToItsJitter) {

@@ -3,10 +3,23 @@
 
 #include <chrono>
 
+#include "skinframe/v1/status.pb.h"
+
 namespace skinframe::server {
 
 void set_deadline(grpc::ClientContext& context) {
   context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
+}
+
+std::optional<Milliseconds> retry_delay(const grpc::Status& status) {
+  v1::StatusDetails details;
+  if (!details.ParseFromString(status.error_details()) || details.details_size() == 0) return std::nullopt;
+  EXPECT_EQ(details.code(), status.error_code());
+  EXPECT_EQ(details.message(), status.error_message());
+  EXPECT_EQ(details.details(0).type_url(), "type.googleapis.com/google.rpc.RetryInfo");
+  v1::RetryInfo retry;
+  EXPECT_TRUE(retry.ParseFromString(details.details(0).value()));
+  return from_duration(retry.retry_delay());
 }
 
 void ApiTest::prepare(grpc::ClientContext& context) const {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,9 @@ class ApiTest : public testing::Test {
   std::unique_ptr<v1::CatalogService::Stub> catalog_;
   std::unique_ptr<v1::WorkerService::Stub> workers_;
 };
+
+// What the status asks its caller to wait (RetryInfo); nothing: no word of it.
+std::optional<Milliseconds> retry_delay(const grpc::Status& status);
 
 // A test that hangs is a failure, not a time-out of the suite.
 void set_deadline(grpc::ClientContext& context);

@@ -121,16 +121,28 @@ TEST_F(SubmitTest, AFullQueueIsResourceExhaustedWithATimeToRetry) {
   options_.queue_limit = 1;
   start();
   ASSERT_TRUE(submit(request("first")).ok());
-  grpc::ClientContext context;
-  set_deadline(context);
-  v1::SubmitJobResponse response;
-  const grpc::Status status = jobs_->SubmitJob(&context, request("second"), &response);
+  const grpc::Status status = submit(request("second"));
   EXPECT_EQ(status.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
-  const auto& trailers = context.GetServerTrailingMetadata();
-  const auto retry = trailers.find("retry-after-ms");
-  ASSERT_NE(retry, trailers.end());
-  EXPECT_GT(std::stoi(std::string(retry->second.data(), retry->second.size())), 0);
+  EXPECT_GT(retry_delay(status).value_or(Milliseconds(0)), Milliseconds(0));
   EXPECT_TRUE(submit(request("first")).ok());  // the one that is there already is no new one
+}
+
+// google.rpc.Status {8, message, [Any{type, RetryInfo{1 s}}]}, written by hand after googleapis' numbering.
+TEST_F(SubmitTest, TheTimeToRetryIsGooglesRetryInfoByteForByte) {
+  server_.reset();
+  options_.queue_limit = 1;
+  start();
+  ASSERT_TRUE(submit(request("first")).ok());
+  const grpc::Status status = submit(request("second"));
+  const auto field = [](char tag, const std::string& bytes) {
+    EXPECT_LT(bytes.size(), 128u) << "one byte of length";
+    return std::string(1, tag) + static_cast<char>(bytes.size()) + bytes;
+  };
+  const std::string one_second = field('\x0a', std::string("\x08\x01"));
+  const std::string any =
+      field('\x0a', "type.googleapis.com/google.rpc.RetryInfo") + field('\x12', one_second);
+  EXPECT_EQ(status.error_details(),
+            std::string("\x08\x08") + field('\x12', status.error_message()) + field('\x1a', any));
 }
 
 TEST_F(SubmitTest, ValidateOnlyChecksAndMakesNoJob) {

@@ -128,6 +128,14 @@ TEST_F(Tenants, WhoIsNotKnownIsRefusedAndOnlyWorkersWork) {
   EXPECT_EQ(work.job_id(), id);
   token_ = "south";
   EXPECT_EQ(beat(work).error_code(), grpc::StatusCode::PERMISSION_DENIED);
+  grpc::ClientContext checkpoint_context;
+  prepare(checkpoint_context);
+  v1::CheckpointRequest checkpoint;
+  checkpoint.set_job_id(id);
+  checkpoint.set_fencing_token(work.fencing_token());
+  v1::CheckpointResponse accepted;
+  EXPECT_EQ(workers_->Checkpoint(&checkpoint_context, checkpoint, &accepted).error_code(),
+            grpc::StatusCode::PERMISSION_DENIED);
   EXPECT_EQ(complete(outcome(work, v1::JOB_STATE_SUCCEEDED)).error_code(),
             grpc::StatusCode::PERMISSION_DENIED);
   EXPECT_EQ(download(sha256_hex("a mesh"), &work).error_code(), grpc::StatusCode::PERMISSION_DENIED);
@@ -153,17 +161,15 @@ TEST_F(Tenants, QuotasAreNamedWithTheirRemedyAndQueuedOnesCanBeRetried) {
   submit();
   v1::SubmitJobRequest second;
   *second.mutable_spec() = spec();
-  grpc::ClientContext context;
-  prepare(context);
-  v1::SubmitJobResponse response;
-  const grpc::Status queued = jobs_->SubmitJob(&context, second, &response);
+  const grpc::Status queued = submit(second);
   EXPECT_EQ(queued.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_NE(queued.error_message().find("quota of queued jobs"), std::string::npos) << queued.error_message();
-  EXPECT_EQ(context.GetServerTrailingMetadata().count("retry-after-ms"), 1u);
+  EXPECT_GT(retry_delay(queued).value_or(Milliseconds(0)), Milliseconds(0));
   const grpc::Status bytes = upload(header("12345678"), {"12345678"});  // "a mesh" has 6
   EXPECT_EQ(bytes.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
   EXPECT_NE(bytes.error_message().find("quota of artifact bytes"), std::string::npos)
       << bytes.error_message();
+  EXPECT_FALSE(retry_delay(bytes)) << "waiting does not help";
   EXPECT_NE(bytes.error_message().find("delete jobs"), std::string::npos) << bytes.error_message();
   EXPECT_TRUE(upload(header("1234"), {"1234"}).ok());
   token_ = "south";

@@ -173,7 +173,9 @@ TEST_F(WatchTest, AStoppingServerEndsWatchesAsUnavailableAndTheyResume) {
   ASSERT_TRUE(reader->Read(&event));
   server_->stop();
   EXPECT_FALSE(reader->Read(&event));
-  EXPECT_EQ(reader->Finish().error_code(), grpc::StatusCode::UNAVAILABLE);
+  const grpc::Status stopped = reader->Finish();
+  EXPECT_EQ(stopped.error_code(), grpc::StatusCode::UNAVAILABLE);
+  EXPECT_GT(retry_delay(stopped).value_or(Milliseconds(0)), Milliseconds(0));
   restart();
   ASSERT_TRUE(cancel(id).ok());
   std::vector<v1::JobEvent> events;
