@@ -10,6 +10,7 @@
 #include <string>
 #include <variant>
 
+#include "server/app/check_health.h"
 #include "server/app/options.h"
 #include "server/app/server.h"
 
@@ -51,6 +52,11 @@ int main(int argc, char** argv) {
     return end->exit_code;
   }
   const auto& options = std::get<ServerOptions>(parsed);
+  if (!options.check_health.empty()) {
+    gpr_set_log_function(drop_grpc_line);
+    const auto status = check_health(options.check_health);
+    return status.ok() ? 0 : fail(status, 1);
+  }
   if (const auto status = options.validate(); !status.ok()) return fail(status, 2);
 
   spdlog::set_default_logger(spdlog::stderr_color_mt("server"));

@@ -147,6 +147,9 @@ std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* c
   app.add_option("--drain", drain_seconds, "seconds that calls under way have left at a stop")
       ->capture_default_str();
   app.add_option("--port-file", options.port_file, "written with host:port once the server listens");
+  app.add_option("--check-health", options.check_health,
+                 "ask the server at this host:port of this machine how it is: 0 when it serves, 1 otherwise; "
+                 "starts none");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -22,6 +22,7 @@
 #include "worker/agent/backoff.h"
 #include "worker/agent/child_process.h"
 #include "worker/agent/job_runner.h"
+#include "worker/agent/pulse.h"
 #include "worker/agent/work_folder.h"
 #include "worker/run/stop_signals.h"
 
@@ -70,6 +71,17 @@ Result<std::shared_ptr<grpc::Channel>> open_channel(const AgentOptions& options)
   arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 100);
   arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 2'000);
   return grpc::CreateCustomChannel(options.server_address, credentials, arguments);
+}
+
+Result<std::filesystem::path> work_root(const AgentOptions& options) {
+  if (!options.work_root.empty()) return std::filesystem::absolute(options.work_root);
+  std::error_code error;
+  const std::filesystem::path temporary = std::filesystem::temp_directory_path(error);
+  if (!error) return std::filesystem::absolute(temporary / "skinframe-worker");
+  return io_error(
+      fmt::format("no temporary folder: {}; set TMPDIR to a folder that can be written, or give "
+                  "--work-dir",
+                  error.message()));
 }
 
 // One job at a time: ask, run, ask again.
@@ -153,19 +165,11 @@ Status AgentOptions::validate() const {
 Status run_agent_until(const AgentOptions& options, const std::shared_ptr<grpc::Channel>& channel,
                        std::stop_token stop, std::stop_token drain) {
   const std::string instance_id = random_hex();
-  std::filesystem::path root = options.work_root;
-  if (root.empty()) {
-    std::error_code error;
-    root = std::filesystem::temp_directory_path(error) / "skinframe-worker";
-    if (error) {
-      return io_error(
-          fmt::format("no temporary folder: {}; set TMPDIR to a folder that can be written, or give "
-                      "--work-dir",
-                      error.message()));
-    }
-  }
-  const auto folder = agent::AgentFolder::create(std::filesystem::absolute(root), instance_id);
+  const auto root = work_root(options);
+  if (!root) return root.error();
+  const auto folder = agent::AgentFolder::create(*root, instance_id);
   if (!folder) return folder.error();
+  const agent::Pulse pulse(folder->path(), channel);
   const std::string name = options.worker_name.empty() ? default_name() : options.worker_name;
   spdlog::info("{} asks {} for jobs, {} at a time, in {}", name, options.server_address, options.slots,
                folder->path().string());
@@ -177,6 +181,12 @@ Status run_agent_until(const AgentOptions& options, const std::shared_ptr<grpc::
   }
   for (std::thread& thread : threads) thread.join();
   return ok_status();
+}
+
+Status check_agent_health(const AgentOptions& options) {
+  const auto root = work_root(options);
+  if (!root) return root.error();
+  return agent::check_pulse(*root, std::filesystem::file_time_type::clock::now());
 }
 
 int run_agent(const AgentOptions& options) {

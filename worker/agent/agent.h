@@ -55,4 +55,9 @@ int run_agent(const AgentOptions& options);
 Status run_agent_until(const AgentOptions& options, const std::shared_ptr<grpc::Channel>& channel,
                        std::stop_token stop, std::stop_token drain = {});
 
+// For health checks: ok when an agent of this work folder is connected to its server. It says nothing of
+// jobs, and a worker whose server is away is not ill: its jobs go on, so nothing should be restarted because
+// of it.
+Status check_agent_health(const AgentOptions& options);
+
 }  // namespace skinframe

@@ -53,6 +53,10 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--name", agent.worker_name, "Name shown to people (default: host and process)");
 
+  bool check_health = false;
+  app.add_flag("--check-health", check_health,
+               "Say whether a worker with this --work-dir is connected to its server: 0 or 1; starts none");
+
   std::string job_dir;
   CLI::App* job = app.add_subcommand("run-job", "One job in this process; the agent calls it");
   job->add_option("WORKDIR", job_dir, "Folder with job.json")->required();
@@ -73,6 +77,11 @@ int main(int argc, char** argv) {
   agent.tls_cert = tls_cert;
   agent.tls_key = tls_key;
   if (drain_seconds) agent.drain = std::chrono::milliseconds(std::llround(*drain_seconds * 1000));
+  if (check_health) {
+    const auto healthy = check_agent_health(agent);
+    if (!healthy) std::cerr << "skinframe-worker: " << healthy.error().message << '\n';
+    return healthy ? 0 : 1;
+  }
   if (auto valid = agent.validate(); !valid) {
     std::cerr << "skinframe-worker: " << valid.error().message << '\n';
     return 2;

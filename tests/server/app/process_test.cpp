@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // The real program: killed without warning, started again, asked to stop.
+#include <gmock/gmock.h>
 #include <grpcpp/grpcpp.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <future>
 #include <mutex>
 #include <set>
@@ -216,6 +218,28 @@ TEST_F(ServerProcessTest, TheNetworkWithoutTlsIsRefusedInOneSentence) {
   EXPECT_EQ(code, 2);
   EXPECT_NE(text.find("--allow-plaintext"), std::string::npos) << text;
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+}
+
+TEST_F(ServerProcessTest, ItsOwnHealthCheckTellsAServingServerFromNone) {
+  const std::string address = process_.start();
+  ASSERT_FALSE(address.empty());
+  EXPECT_EQ(ServerProcess::run({"--check-health", address}, folder_.path()).first, 0);
+  EXPECT_EQ(process_.stop(SIGTERM), 0);
+  const auto [code, words] = ServerProcess::run({"--check-health", address}, folder_.path());
+  EXPECT_EQ(code, 1);
+  EXPECT_THAT(words, testing::HasSubstr("does not answer"));
+}
+
+TEST_F(ServerProcessTest, ItsOwnHealthCheckNeedsNoFileOfAnEncryptedServer) {
+  const std::string at = (folder_.path() / "server").string();
+  ASSERT_EQ(std::system(("openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:P-256 -nodes -days 2 "
+                         "-subj /CN=elsewhere -keyout " +
+                         at + ".key -out " + at + ".crt 2>/dev/null")
+                            .c_str()),
+            0);
+  const std::string address = process_.start({"--tls-cert", at + ".crt", "--tls-key", at + ".key"});
+  ASSERT_FALSE(address.empty());
+  EXPECT_EQ(ServerProcess::run({"--check-health", address}, folder_.path()).first, 0);
 }
 
 }  // namespace
