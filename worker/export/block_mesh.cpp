@@ -2,8 +2,36 @@
 #include "worker/export/block_mesh.h"
 
 #include <algorithm>
+#include <bit>
+#include <cstdint>
 
 namespace skinframe {
+namespace {
+
+// What number a vertex of the whole mesh has in the block: a hash table with open addressing.
+class NumberTable {
+ public:
+  explicit NumberTable(std::size_t most) : slots_(std::bit_ceil(2 * most + 2), {-1, 0}) {}
+
+  // The number it has, or `next` from now on.
+  int number_of(int vertex, int next) {
+    std::size_t at = static_cast<std::uint32_t>(vertex) * std::uint64_t{0x9E3779B97F4A7C15} >> 20;
+    while (true) {
+      auto& [known, number] = slots_[at & (slots_.size() - 1)];
+      if (known == vertex) return number;
+      if (known < 0) {
+        known = vertex;
+        return number = next;
+      }
+      ++at;
+    }
+  }
+
+ private:
+  std::vector<std::pair<int, int>> slots_;
+};
+
+}  // namespace
 
 BlockMesh::BlockMesh(ThinningState& state, const ThinningBlock& block) : state_(state), block_(block) {
   number_vertices();
@@ -13,18 +41,18 @@ BlockMesh::BlockMesh(ThinningState& state, const ThinningBlock& block) : state_(
 void BlockMesh::number_vertices() {
   const auto& all = state_.mesh->triangles;
   own_ = static_cast<int>(block_.own.size());
-  for (const auto* list : {&block_.own, &block_.beside})
-    for (int t : *list) numbers_.insert(numbers_.end(), all[t].begin(), all[t].end());
-  std::sort(numbers_.begin(), numbers_.end());
-  numbers_.erase(std::unique(numbers_.begin(), numbers_.end()), numbers_.end());
-  for (int v : numbers_) places_.push_back(state_.mesh->vertices[v]);
-  locked_.assign(numbers_.size(), 0);
+  NumberTable table(3 * (block_.own.size() + block_.beside.size()));
   for (const auto* list : {&block_.own, &block_.beside}) {
     for (int t : *list) {
       auto& corners = triangles_.emplace_back();
       for (int k = 0; k < 3; ++k) {
-        corners[k] = static_cast<int>(std::lower_bound(numbers_.begin(), numbers_.end(), all[t][k]) -
-                                      numbers_.begin());
+        const int v = all[t][k];
+        corners[k] = table.number_of(v, static_cast<int>(numbers_.size()));
+        if (corners[k] == static_cast<int>(numbers_.size())) {
+          numbers_.push_back(v);
+          places_.push_back(state_.mesh->vertices[v]);
+          locked_.push_back(0);
+        }
         if (list == &block_.beside) locked_[corners[k]] = 1;
       }
     }
@@ -36,6 +64,7 @@ void BlockMesh::number_vertices() {
     const auto& c = triangles_[t];
     keep_shape_of(static_cast<int>(t), {places_[c[0]], places_[c[1]], places_[c[2]]});
   }
+  seen_.assign(numbers_.size(), 0);
   dead_.assign(numbers_.size(), 0);
 }
 
@@ -72,13 +101,16 @@ void BlockMesh::gather(int v, std::vector<int>& around) {
   }
 }
 
-void BlockMesh::neighbours(int v, const std::vector<int>& around, std::vector<int>& near) const {
+void BlockMesh::neighbours(int v, const std::vector<int>& around, std::vector<int>& near) {
   near.clear();
-  for (int t : around)
-    for (int w : triangles_[t])
-      if (w != v) near.push_back(w);
-  std::sort(near.begin(), near.end());
-  near.erase(std::unique(near.begin(), near.end()), near.end());
+  ++vertex_stamp_;
+  for (int t : around) {
+    for (int w : triangles_[t]) {
+      if (w == v || seen_[w] == vertex_stamp_) continue;
+      seen_[w] = vertex_stamp_;
+      near.push_back(w);
+    }
+  }
 }
 
 void BlockMesh::merge(int u, int v, const Eigen::Vector3d& place, const std::vector<int>& star,

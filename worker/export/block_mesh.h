@@ -64,8 +64,10 @@ class BlockMesh {
 
   // The triangles about v, in a steady order; forgets those that are gone.
   void gather(int v, std::vector<int>& around);
-  // The vertices about v, in ascending order.
-  void neighbours(int v, const std::vector<int>& around, std::vector<int>& near) const;
+  // The vertices about v, in a steady order.
+  void neighbours(int v, const std::vector<int>& around, std::vector<int>& near);
+  // Whether neighbours() has named it last.
+  bool was_neighbour(int v) const { return seen_[v] == vertex_stamp_; }
 
   // visit(number, point) of each point of the surface that belongs to t.
   template <class Visit>
@@ -99,10 +101,11 @@ class BlockMesh {
   std::vector<Eigen::Vector3d> places_;
   std::vector<std::array<int, 3>> triangles_;
   std::vector<char> dead_, locked_;
+  std::vector<std::uint32_t> seen_;  // one a vertex: in which search for neighbours
   std::vector<Slot> slots_;  // one a triangle
   std::vector<int> first_corner_, next_corner_;
   std::vector<int> points_, first_point_, next_point_;
-  std::uint32_t stamp_ = 0;
+  std::uint32_t stamp_ = 0, vertex_stamp_ = 0;
 };
 
 }  // namespace skinframe

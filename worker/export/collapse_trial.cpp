@@ -70,7 +70,7 @@ bool CollapseTrial::keeps_manifold(int u, int v) {
   mesh_.neighbours(u, around_u_, near_u_);
   mesh_.neighbours(v, around_v_, near_v_);
   int shared = 0;
-  for (int w : near_u_) shared += std::binary_search(near_v_.begin(), near_v_.end(), w);
+  for (int w : near_u_) shared += mesh_.was_neighbour(w);
   return shared == 2 && near_u_.size() == around_u_.size() && near_v_.size() == around_v_.size() &&
          near_u_.size() + near_v_.size() > 8;
 }

@@ -2,27 +2,54 @@
 #include "worker/export/crossings.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/box_intersection_d.h>
-#include <tbb/parallel_for.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <numeric>
+#include <tuple>
+
+#include "worker/export/triangle_gap.h"
+#include "worker/skin/box_tree.h"
 
 namespace skinframe {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using Box = CGAL::Box_intersection_d::Box_with_info_d<float, 3, int>;
-constexpr std::size_t kPairsABatch = 1 << 16;
 // Two on one side that are nearer to folded than this count as lying on each other: slivers are rounded to
 // float, and no program that reads them can tell the difference.
 constexpr double kFoldCosine = -0.99999;
-constexpr double kBoxRounding = 1e-6;  // relative, absolute below 1 mm: more than a turn and a float lose
+constexpr double kNoArea = 1e-9;  // of the longest side squared: left to the exact predicates
 
 Kernel::Point_3 point(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+bool has_area(const Corners& p, const Eigen::Vector3d& normal) {
+  const double longest =
+      std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
+  return normal.squaredNorm() > kNoArea * kNoArea * longest * longest;
+}
+
+// What floating point tells on the safe side: most pairs are apart, or fair neighbours.
+bool are_surely_clear(const TriangleMesh& mesh, const std::array<int, 3>& p, const std::array<int, 3>& q) {
+  const Corners a{mesh.vertices[p[0]], mesh.vertices[p[1]], mesh.vertices[p[2]]};
+  const Corners b{mesh.vertices[q[0]], mesh.vertices[q[1]], mesh.vertices[q[2]]};
+  const Eigen::Vector3d n = (a[1] - a[0]).cross(a[2] - a[0]), m = (b[1] - b[0]).cross(b[2] - b[0]);
+  if (!has_area(a, n) || !has_area(b, m)) return false;
+  int shared = 0, i = 0, j = 0;
+  for (int k = 0; k < 3; ++k) {
+    for (int l = 0; l < 3; ++l) {
+      if (p[k] != q[l]) continue;
+      ++shared;
+      i = k;
+      j = l;
+    }
+  }
+  if (shared == 0) return are_apart(a, b);
+  if (shared == 1)
+    return meet_in_their_corner_only({a[i], a[(i + 1) % 3], a[(i + 2) % 3]},
+                                     {b[j], b[(j + 1) % 3], b[(j + 2) % 3]});
+  return shared == 2 && n.dot(m) > 0.0;
+}
 
 // Not of unit length.
 Eigen::Vector3d normal(const TriangleMesh& mesh, const std::array<int, 3>& c) {
@@ -31,6 +58,7 @@ Eigen::Vector3d normal(const TriangleMesh& mesh, const std::array<int, 3>& c) {
 
 bool cross(const TriangleMesh& mesh, int s, int t) {
   const auto &p = mesh.triangles[s], &q = mesh.triangles[t];
+  if (are_surely_clear(mesh, p, q)) return false;
   std::array<int, 3> shared{};
   int count = 0;
   for (int v : p)
@@ -58,47 +86,17 @@ bool cross(const TriangleMesh& mesh, int s, int t) {
 }  // namespace
 
 std::vector<std::pair<int, int>> crossing_triangles(const TriangleMesh& mesh, const std::vector<int>& among) {
-  // CGAL sweeps along one axis what it cannot part along another, so that flat walls square to the axes cost
-  // pairs by the square. Seen askew they do not; boxes only propose, a little wider than need be.
-  const Eigen::Matrix3d askew = Eigen::AngleAxisd(0.7, Eigen::Vector3d(3, 5, 8).normalized()).matrix();
-  std::vector<Box> boxes;
+  std::vector<Eigen::AlignedBox3f> boxes;
   boxes.reserve(among.size());
   for (const int t : among) {
     Eigen::AlignedBox3d box;
-    for (int v : mesh.triangles[t]) box.extend(askew * mesh.vertices[v]);
-    float from[3], to[3];
-    for (int k = 0; k < 3; ++k) {
-      const double room = kBoxRounding * (1.0 + std::max(std::abs(box.min()[k]), std::abs(box.max()[k])));
-      from[k] = static_cast<float>(box.min()[k] - room);
-      to[k] = static_cast<float>(box.max()[k] + room);
-    }
-    boxes.emplace_back(from, to, t);
+    for (int v : mesh.triangles[t]) box.extend(mesh.vertices[v]);
+    boxes.push_back(box_around(box));
   }
-  std::vector<std::pair<int, int>> batch, found;
-  const auto judge = [&] {
-    std::vector<char> crosses(batch.size(), 0);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, batch.size(), 1024), [&](const auto& range) {
-      for (std::size_t i = range.begin(); i < range.end(); ++i)
-        crosses[i] = cross(mesh, batch[i].first, batch[i].second);
-    });
-    for (std::size_t i = 0; i < batch.size(); ++i)
-      if (crosses[i]) found.push_back(batch[i]);
-    batch.clear();
-  };
-  const auto are_flat_neighbours = [&](int s, int t) {
-    // Two on one side, not folded back: by far the most pairs, and none of them cross.
-    const auto &p = mesh.triangles[s], &q = mesh.triangles[t];
-    int shared = 0;
-    for (int v : p) shared += std::find(q.begin(), q.end(), v) != q.end();
-    if (shared != 2) return false;
-    return normal(mesh, p).dot(normal(mesh, q)) > 0.0;
-  };
-  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& a, const Box& b) {
-    if (are_flat_neighbours(a.info(), b.info())) return;
-    batch.emplace_back(std::min(a.info(), b.info()), std::max(a.info(), b.info()));
-    if (batch.size() == kPairsABatch) judge();
-  });
-  judge();
+  auto found = BoxTree(boxes).pairs([&](int i, int j) { return cross(mesh, among[i], among[j]); });
+  for (auto& [i, j] : found) {
+    std::tie(i, j) = std::minmax({among[i], among[j]});
+  }
   std::sort(found.begin(), found.end());
   return found;
 }

@@ -7,6 +7,7 @@
 #include <openvdb/tools/Prune.h>
 #include <tbb/task_arena.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -16,7 +17,7 @@
 #include "worker/export/strut_level_set.h"
 #include "worker/export/thin_out.h"
 #include "worker/export/untangle.h"
-#include "worker/frame/vertex_graph.h"
+#include "worker/frame/disjoint_sets.h"
 #include "worker/skin/distance_grids.h"
 #include "worker/skin/level_set.h"
 #include "worker/skin/mend_edges.h"
@@ -97,21 +98,26 @@ openvdb::FloatGrid::Ptr m1_level_set(const TriangleMesh& mesh, const Skin& skin,
 }
 
 // Closed shells too small to matter: pockets of the cavity (counted) and crumbs of solid floating in it.
-TriangleMesh drop_small_shells(const TriangleMesh& cavity, double smallest_mm3, PrintableMesh& result) {
-  TriangleMesh kept;
-  for (const TriangleMesh& shell : split_pieces(cavity)) {
-    const double volume = signed_volume(shell);
-    if (std::abs(volume) < smallest_mm3) {
-      result.pockets_filled += volume > 0.0;
-      continue;
-    }
-    result.pockets += volume > 0.0;
-    const int first = static_cast<int>(kept.vertices.size());
-    kept.vertices.insert(kept.vertices.end(), shell.vertices.begin(), shell.vertices.end());
-    for (const auto& t : shell.triangles)
-      kept.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+void drop_small_shells(TriangleMesh& cavity, double smallest_mm3, PrintableMesh& result) {
+  DisjointSets shells(cavity.vertices.size());
+  for (const auto& [a, b, c] : cavity.triangles) {
+    shells.unite(a, b);
+    shells.unite(b, c);
   }
-  return kept;
+  std::vector<double> volumes(cavity.vertices.size(), 0.0);  // each at one vertex of its shell
+  for (const auto& [a, b, c] : cavity.triangles) {
+    const Eigen::Vector3d &p = cavity.vertices[a], &q = cavity.vertices[b], &r = cavity.vertices[c];
+    volumes[shells.find(a)] += p.dot(q.cross(r)) / 6.0;
+  }
+  for (const double volume : volumes) {
+    if (std::abs(volume) >= smallest_mm3)
+      result.pockets += volume > 0.0;
+    else
+      result.pockets_filled += volume > 0.0;
+  }
+  std::erase_if(cavity.triangles,
+                [&](const auto& t) { return std::abs(volumes[shells.find(t[0])]) < smallest_mm3; });
+  drop_unused_vertices(cavity);
 }
 
 Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Frame& frame,
@@ -134,7 +140,7 @@ Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Fr
   cavity_grid.reset();
   if (context.cancelled()) return cancelled_error();
 
-  cavity = drop_small_shells(cavity, options.smallest_pocket_mm3, result);
+  drop_small_shells(cavity, options.smallest_pocket_mm3, result);
   bool manifold = mend_edges(cavity).manifold;
   if (context.cancelled()) return cancelled_error();
   steps.done("surface");

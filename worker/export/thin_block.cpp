@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 #include <optional>
 
 #include "worker/export/block_mesh.h"
@@ -37,12 +38,24 @@ struct Quadric {
 struct Candidate {
   float cost;  // about the mean squared distance, mm2
   int u, v;
-  std::uint32_t stamp;  // of both ends together, when it was judged
+  std::uint32_t stamp;    // of both ends together, when it was judged
+  Eigen::Vector3f place;  // where it should go
   // A heap's top is its greatest: the least cost, then the first edge.
   bool operator<(const Candidate& o) const {
     return cost != o.cost ? cost > o.cost : u != o.u ? u > o.u : v > o.v;
   }
 };
+
+// The solution of a x = r, for a symmetric and positive definite.
+Eigen::Vector3d solve(const Eigen::Matrix3d& a, const Eigen::Vector3d& r) {
+  const double c00 = a(1, 1) * a(2, 2) - a(1, 2) * a(1, 2), c01 = a(0, 2) * a(1, 2) - a(0, 1) * a(2, 2),
+               c02 = a(0, 1) * a(1, 2) - a(0, 2) * a(1, 1), c11 = a(0, 0) * a(2, 2) - a(0, 2) * a(0, 2),
+               c12 = a(0, 1) * a(0, 2) - a(0, 0) * a(1, 2), c22 = a(0, 0) * a(1, 1) - a(0, 1) * a(0, 1);
+  const double det = a(0, 0) * c00 + a(0, 1) * c01 + a(0, 2) * c02;
+  return Eigen::Vector3d(c00 * r[0] + c01 * r[1] + c02 * r[2], c01 * r[0] + c11 * r[1] + c12 * r[2],
+                         c02 * r[0] + c12 * r[1] + c22 * r[2]) /
+         det;
+}
 
 class Block {
  public:
@@ -53,6 +66,8 @@ class Block {
         mesh_(state, block),
         trial_(state, block, limits, mesh_) {
     stamps_.assign(mesh_.vertices(), 0);
+    became_.resize(mesh_.vertices());
+    std::iota(became_.begin(), became_.end(), 0);
     quadrics_.resize(mesh_.vertices());
     for (int t = 0; t < mesh_.own(); ++t) add_planes(t);
     for (int t = 0; t < mesh_.own(); ++t) {
@@ -61,6 +76,8 @@ class Block {
         if (u < v) consider(u, v);
       }
     }
+    std::make_heap(heap_.begin(), heap_.end());
+    is_heap_ = true;
   }
 
   void run() {
@@ -69,9 +86,12 @@ class Block {
       std::pop_heap(heap_.begin(), heap_.end());
       const Candidate next = heap_.back();
       heap_.pop_back();
-      if (next.stamp == stamps_[next.u] + stamps_[next.v] && !mesh_.is_dead(next.u) &&
-          !mesh_.is_dead(next.v) && try_collapse(next.u, next.v))
-        left -= 2;
+      const int u = is_now(next.u), v = is_now(next.v);
+      if (u == v) continue;
+      if (next.stamp == stamps_[u] + stamps_[v] && u == next.u && v == next.v)
+        left -= 2 * try_collapse(next);
+      else if (!limits_.is_bounded)
+        consider(u, v);
     }
     mesh_.write_back();
   }
@@ -106,7 +126,7 @@ class Block {
     const Eigen::Vector3d middle = 0.5 * (pu + pv);
     const Eigen::Vector3d at = middle - origin_;
     const Eigen::Matrix3d a = q.a + kMiddle * q.area * Eigen::Matrix3d::Identity();
-    Eigen::Vector3d place = middle - a.llt().solve(q.a * at + q.b);
+    Eigen::Vector3d place = middle - solve(a, q.a * at + q.b);
     if (!((place - middle).squaredNorm() <= kFurthestInEdges * kFurthestInEdges * (pu - pv).squaredNorm()))
       place = middle;
     place = place.cast<float>().cast<double>();
@@ -119,20 +139,30 @@ class Block {
     if (!best || !(best->second <= limits_.quadric_mm * limits_.quadric_mm) ||
         !block_.box.contains(best->first))
       return;
-    heap_.push_back(
-        {static_cast<float>(best->second), std::min(u, v), std::max(u, v), stamps_[u] + stamps_[v]});
-    std::push_heap(heap_.begin(), heap_.end());
+    heap_.push_back({static_cast<float>(best->second), std::min(u, v), std::max(u, v),
+                     stamps_[u] + stamps_[v], best->first.cast<float>()});
+    if (is_heap_) std::push_heap(heap_.begin(), heap_.end());
   }
 
-  bool try_collapse(int u, int v) {
-    const auto best = best_place(u, v);
-    if (!best || !trial_.holds(u, v, best->first)) return false;
-    trial_.carry_out(u, v, best->first);
-    ++stamps_[u];
-    quadrics_[u] += quadrics_[v];
-    mesh_.gather(u, around_);
-    mesh_.neighbours(u, around_, near_);
-    for (int w : near_) consider(u, w);
+  int is_now(int v) const {
+    while (became_[v] != v) v = became_[v];
+    return v;
+  }
+
+  // Where nothing is bounded all edges stay in the heap until they go, and are judged again when their turn
+  // comes: a cost only grows. Where collapses are refused they get another chance as soon as something
+  // changes about them.
+  bool try_collapse(const Candidate& edge) {
+    const Eigen::Vector3d place = edge.place.cast<double>();
+    if (!trial_.holds(edge.u, edge.v, place)) return false;
+    trial_.carry_out(edge.u, edge.v, place);
+    ++stamps_[edge.u];
+    became_[edge.v] = edge.u;
+    quadrics_[edge.u] += quadrics_[edge.v];
+    if (!limits_.is_bounded) return true;
+    mesh_.gather(edge.u, around_);
+    mesh_.neighbours(edge.u, around_, near_);
+    for (int w : near_) consider(edge.u, w);
     return true;
   }
 
@@ -142,8 +172,10 @@ class Block {
   BlockMesh mesh_;
   CollapseTrial trial_;
   std::vector<std::uint32_t> stamps_;  // of each vertex: how often it has changed
+  std::vector<int> became_;            // the vertex that took in each; itself while it is there
   std::vector<Quadric> quadrics_;
   std::vector<Candidate> heap_;
+  bool is_heap_ = false;
   std::vector<int> around_, near_;
 };
 

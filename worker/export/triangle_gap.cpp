@@ -76,27 +76,4 @@ bool meet_in_their_corner_only(const Corners& a, const Corners& b) {
   return segment_misses(a[1], a[2], b) && segment_misses(b[1], b[2], a);
 }
 
-// Ericson, Real-Time Collision Detection, 5.1.5.
-double squared_distance(const Eigen::Vector3d& p, const Corners& t) {
-  const Eigen::Vector3d ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
-  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
-  if (d1 <= 0.0 && d2 <= 0.0) return ap.squaredNorm();
-  const Eigen::Vector3d bp = p - t[1];
-  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
-  if (d3 >= 0.0 && d4 <= d3) return bp.squaredNorm();
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return (ap - ab * (d1 / (d1 - d3))).squaredNorm();
-  const Eigen::Vector3d cp = p - t[2];
-  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
-  if (d6 >= 0.0 && d5 <= d6) return cp.squaredNorm();
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return (ap - ac * (d2 / (d2 - d6))).squaredNorm();
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0)
-    return (bp - (t[2] - t[1]) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)))).squaredNorm();
-  const double sum = va + vb + vc;
-  if (!(sum > 0.0)) return ap.squaredNorm();  // no area left: a corner is near enough to be on the safe side
-  return (ap - (ab * vb + ac * vc) / sum).squaredNorm();
-}
-
 }  // namespace skinframe

@@ -4,11 +4,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+
+#include "worker/skin/nearest_on_triangle.h"
 
 namespace skinframe {
-
-using Corners = std::array<Eigen::Vector3d, 3>;
 
 // A plane parts the two with at least kLeastGapMm between them. False also where rounding leaves it open.
 inline constexpr double kLeastGapMm = 1e-6;
@@ -17,6 +16,8 @@ bool are_apart(const Corners& a, const Corners& b);
 // Triangles with the corner a[0] = b[0] in common meet nowhere else. False where that is open.
 bool meet_in_their_corner_only(const Corners& a, const Corners& b);
 
-double squared_distance(const Eigen::Vector3d& point, const Corners& triangle);
+inline double squared_distance(const Eigen::Vector3d& point, const Corners& triangle) {
+  return (point - nearest_on_triangle(point, triangle)).squaredNorm();
+}
 
 }  // namespace skinframe

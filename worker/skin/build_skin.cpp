@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 #include <openvdb/tools/Composite.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 #include <algorithm>
@@ -83,11 +84,11 @@ Result<Skin> build(const TriangleMesh& mesh, const SkinOptions& options, const R
   const double inner_voxels = std::ceil(options.thickness_mm / *voxel) + kSpareInnerVoxels;
   grids->inner_band_mm = inner_voxels * *voxel;
   grids->outer_band_mm = kOuterVoxels * *voxel;
-  grids->fine = distance_grid(mesh, *voxel, kOuterVoxels, inner_voxels);
-  if (context.cancelled()) return cancelled_error();
   // No point is deeper than half of the box's least edge.
   const double deepest = 0.5 * box.extent().minCoeff() / grids->coarse_voxel_mm + 2.0;
-  grids->coarse = distance_grid(mesh, grids->coarse_voxel_mm, kOuterVoxels, deepest);
+  tbb::parallel_invoke(
+      [&] { grids->fine = distance_grid(mesh, *voxel, kOuterVoxels, inner_voxels); },
+      [&] { grids->coarse = distance_grid(mesh, grids->coarse_voxel_mm, kOuterVoxels, deepest); });
   if (context.cancelled()) return cancelled_error();
   const DistanceField body_field(grids);
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/skin/mend_edges.h"
 
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -25,18 +27,28 @@ struct Side {
   bool forth;  // run from the lower to the higher end
 };
 
+// By the lower end, the upper end, the triangle: counted into place by the lower end, then sorted among few.
 std::vector<Side> sorted_sides(const TriangleMesh& mesh) {
-  std::vector<Side> sides;
-  sides.reserve(3 * mesh.triangles.size());
+  const auto low_end = [](const std::array<int, 3>& t, int k) { return std::min(t[k], t[(k + 1) % 3]); };
+  std::vector<int> next(mesh.vertices.size() + 1, 0);
+  for (const auto& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) ++next[low_end(t, k) + 1];
+  std::partial_sum(next.begin(), next.end(), next.begin());
+  const std::vector<int> first = next;
+  std::vector<Side> sides(3 * mesh.triangles.size());
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
     for (int k = 0; k < 3; ++k) {
       const auto a = static_cast<std::uint32_t>(mesh.triangles[t][k]);
       const auto b = static_cast<std::uint32_t>(mesh.triangles[t][(k + 1) % 3]);
-      sides.push_back({(std::uint64_t{std::min(a, b)} << 32) | std::max(a, b), t, a < b});
+      sides[next[low_end(mesh.triangles[t], k)]++] = {(std::uint64_t{std::min(a, b)} << 32) | std::max(a, b),
+                                                      t, a < b};
     }
   }
-  tbb::parallel_sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
-    return x.key != y.key ? x.key < y.key : x.triangle < y.triangle;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.vertices.size(), 4096), [&](const auto& range) {
+    for (std::size_t v = range.begin(); v < range.end(); ++v)
+      std::sort(sides.begin() + first[v], sides.begin() + first[v + 1], [](const Side& x, const Side& y) {
+        return x.key != y.key ? x.key < y.key : x.triangle < y.triangle;
+      });
   });
   return sides;
 }

@@ -1,77 +1,126 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/skin/triangle_tree.h"
 
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
-#include <CGAL/Simple_cartesian.h>
+#include <limits>
 
-#include <cmath>
-#include <vector>
+#include "worker/skin/box_tree.h"
+#include "worker/skin/nearest_on_triangle.h"
 
 namespace skinframe {
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;
-using Triangles = std::vector<Kernel::Triangle_3>;
-using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
-using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+std::vector<Corners> triangles_with_area(const TriangleMesh& mesh) {
+  std::vector<Corners> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Corners t{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+    if ((t[1] - t[0]).cross(t[2] - t[0]).squaredNorm() > 0.0) triangles.push_back(t);
+  }
+  return triangles;
+}
 
-Kernel::Point_3 point(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-Kernel::Vector_3 vector(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+// Whether the line passes the side from p to q on its left, seen along the line. Two triangles with the side
+// in common get opposite answers, bit by bit. A line that meets the side, or ends of sides, is judged as if
+// it were moved by (e, e^2, e^3) with e next to nothing: so no triangle is met twice or never.
+bool is_left(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, const Eigen::Vector3d& p,
+             const Eigen::Vector3d& q) {
+  const double side = direction.dot((p - from).cross(q - from));
+  if (side != 0.0) return side > 0.0;
+  const Eigen::Vector3d moved = direction.cross(q - p);
+  for (int k = 0; k < 3; ++k)
+    if (moved[k] != 0.0) return moved[k] > 0.0;
+  return direction.dot(q - p) > 0.0;  // seen end on: it has no two sides
+}
 
-double along_normal(const Kernel::Triangle_3& t, const Kernel::Vector_3& direction) {
-  return CGAL::cross_product(t[1] - t[0], t[2] - t[0]) * direction;
+// Whether the box meets the part of the line from `from` to `most` along the direction.
+bool meets(const Eigen::AlignedBox3f& box, const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
+           double most) {
+  double low = 0.0, high = most;
+  for (int k = 0; k < 3; ++k) {
+    if (direction[k] == 0.0) {
+      if (from[k] < box.min()[k] || from[k] > box.max()[k]) return false;
+      continue;
+    }
+    const double a = (box.min()[k] - from[k]) / direction[k], b = (box.max()[k] - from[k]) / direction[k];
+    low = std::max(low, std::min(a, b));
+    high = std::min(high, std::max(a, b));
+  }
+  // Rounding must not part the line from a box without depth.
+  return low <= high + 1e-9 * (1.0 + std::abs(high));
 }
 
 }  // namespace
 
 struct TriangleTree::Impl {
-  Triangles triangles;
-  Tree tree;
+  explicit Impl(const TriangleMesh& mesh) : triangles(triangles_with_area(mesh)), tree(boxes()) {}
+
+  std::vector<Eigen::AlignedBox3f> boxes() const {
+    std::vector<Eigen::AlignedBox3f> all;
+    all.reserve(triangles.size());
+    for (const Corners& t : triangles) {
+      Eigen::AlignedBox3d box(t[0]);
+      box.extend(t[1]);
+      box.extend(t[2]);
+      all.push_back(box_around(box));
+    }
+    return all;
+  }
+
+  // visit(way, outward) of every triangle that the line meets between `from` and `most` along it.
+  template <class Visit>
+  void cross(const Eigen::Vector3d& from, const Eigen::Vector3d& direction, double most, Visit visit) const {
+    tree.search(
+        [&](const Eigen::AlignedBox3f& box) { return meets(box, from, direction, most); },
+        [&](int item) {
+          const Corners& t = triangles[item];
+          const bool left = is_left(from, direction, t[0], t[1]);
+          if (left != is_left(from, direction, t[1], t[2]) || left != is_left(from, direction, t[2], t[0]))
+            return;
+          const Eigen::Vector3d normal = (t[1] - t[0]).cross(t[2] - t[0]);
+          const double rise = normal.dot(direction);
+          if (rise == 0.0) return;
+          const double way = normal.dot(t[0] - from) / rise;
+          if (way >= 0.0 && way <= most) visit(way, rise > 0.0);
+        });
+  }
+
+  std::vector<Corners> triangles;
+  BoxTree tree;
 };
 
-TriangleTree::TriangleTree(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
-  impl_->triangles.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
-    const Kernel::Triangle_3 triangle(point(mesh.vertices[t[0]]), point(mesh.vertices[t[1]]),
-                                      point(mesh.vertices[t[2]]));
-    if (!triangle.is_degenerate()) impl_->triangles.push_back(triangle);
-  }
-  impl_->tree.insert(impl_->triangles.cbegin(), impl_->triangles.cend());
-  impl_->tree.build();
-  impl_->tree.accelerate_distance_queries();
-}
+TriangleTree::TriangleTree(const TriangleMesh& mesh) : impl_(std::make_unique<Impl>(mesh)) {}
 
 TriangleTree::~TriangleTree() = default;
 
 Eigen::Vector3d TriangleTree::nearest(const Eigen::Vector3d& p) const {
-  const Kernel::Point_3 q = impl_->tree.closest_point(point(p));
-  return {q.x(), q.y(), q.z()};
+  double least = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d nearest = p;
+  impl_->tree.approach(p, least, [&](int item) {
+    const Eigen::Vector3d at = nearest_on_triangle(p, impl_->triangles[item]);
+    const double squared = (at - p).squaredNorm();
+    if (squared >= least) return;
+    least = squared;
+    nearest = at;
+  });
+  return nearest;
 }
 
 double TriangleTree::distance_mm(const Eigen::Vector3d& p) const { return (p - nearest(p)).norm(); }
 
 bool TriangleTree::is_inside(const Eigen::Vector3d& p) const {
-  const Kernel::Vector_3 direction(0.3567, 0.7193, 0.5961);  // along no axis and no likely facet
-  std::vector<Tree::Primitive_id> hits;
-  impl_->tree.all_intersected_primitives(Kernel::Ray_3(point(p), direction), std::back_inserter(hits));
+  const Eigen::Vector3d direction(0.3567, 0.7193, 0.5961);  // along no axis and no likely facet
   int out = 0;
-  for (const auto& hit : hits) out += along_normal(*hit, direction) > 0.0 ? 1 : -1;
+  impl_->cross(p, direction, std::numeric_limits<double>::infinity(),
+               [&](double, bool outward) { out += outward ? 1 : -1; });
   return out > 0;
 }
 
 double TriangleTree::way_out(const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
                              double most) const {
-  std::vector<Tree::Intersection_and_primitive_id<Kernel::Segment_3>::Type> hits;
-  impl_->tree.all_intersections(Kernel::Segment_3(point(from), point(from + most * direction)),
-                                std::back_inserter(hits));
   double nearest = most;
-  for (const auto& hit : hits) {
-    const auto* p = boost::get<Kernel::Point_3>(&hit.first);
-    if (p == nullptr || along_normal(*hit.second, vector(direction)) <= 0.0) continue;
-    nearest = std::min(nearest, (Eigen::Vector3d(p->x(), p->y(), p->z()) - from).dot(direction));
-  }
+  impl_->cross(from, direction, most, [&](double way, bool outward) {
+    if (outward) nearest = std::min(nearest, way);
+  });
   return nearest;
 }
 

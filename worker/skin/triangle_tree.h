@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Exact questions to a closed surface: the nearest point, inside or not, the way out. A tree of its
-// triangles; free of CGAL in this header. Reads from many threads at once are safe.
+// triangles. Reads from many threads at once are safe.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The stages of the geometry on one body: seconds, peak memory, triangles, and the error against voxels of
 // half the width. One body a process, so that the peak is its own:
-//   skinframe_bench_geometry MESH SIZE_MM [THREADS]
+//   skinframe_bench_geometry MESH SIZE_MM [THREADS [times]]
+// With "times" it leaves the error out.
 // Prints one line a stage and ends with 1 when a stage fails. Radii stand at their lower bounds.
 #include <fmt/format.h>
 #include <sys/resource.h>
@@ -79,7 +80,7 @@ FrameOptions frame_options() {
   return options;
 }
 
-void run(const std::filesystem::path& path, double size_mm, int threads) {
+void run(const std::filesystem::path& path, double size_mm, int threads, bool times_only) {
   RunContext context;
   context.threads = threads;
   const auto folder = std::filesystem::temp_directory_path() / fmt::format("skinframe-bench-{}", getpid());
@@ -115,6 +116,7 @@ void run(const std::filesystem::path& path, double size_mm, int threads) {
              cpu_seconds() - cpu_before, peak_mb());
   std::filesystem::remove_all(folder);
 
+  if (times_only) return;
   // What it is worth: not part of the times above.
   const auto finer =
       take(build_skin(solid, {.thickness_mm = 2 * kEtaMm, .voxel_mm = 0.5 * skin.voxel_mm}, context));
@@ -129,7 +131,8 @@ void run(const std::filesystem::path& path, double size_mm, int threads) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) give_up("usage: skinframe_bench_geometry MESH SIZE_MM [THREADS]");
-  run(argv[1], std::atof(argv[2]), argc > 3 ? std::max(1, std::atoi(argv[3])) : 2);
+  if (argc < 3) give_up("usage: skinframe_bench_geometry MESH SIZE_MM [THREADS [times]]");
+  run(argv[1], std::atof(argv[2]), argc > 3 ? std::max(1, std::atoi(argv[3])) : 2,
+      argc > 4 && std::string(argv[4]) == "times");
   return 0;
 }
