@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
     spdlog::warn("without TLS: whoever can reach {} can read and submit jobs", (*server)->address());
   }
   int signal_number = 0;
-  while (sigwait(&signals, &signal_number) == 0 && signal_number == SIGHUP) (*server)->reload_profiles();
+  while (sigwait(&signals, &signal_number) == 0 && signal_number == SIGHUP) (*server)->reload();
   spdlog::info("stopping on {}", signal_number == SIGINT ? "SIGINT" : "SIGTERM");
   (*server)->stop();
   spdlog::info("stopped");

@@ -140,8 +140,10 @@ std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* c
   app.add_option("--keep-progress-hours", options.keep_progress_hours,
                  "the progress of an ended job is forgotten after so many hours; 0: with the job")
       ->capture_default_str();
-  app.add_option("--tenants", options.tenants,
-                 "JSON file: whose caller is whose, shares, quotas, who works; see server/README.md");
+  app.add_option(
+      "--tenants", options.tenants,
+      "JSON file: whose caller is whose, shares, quotas, who works (server/README.md); read again when "
+      "it changes and on SIGHUP");
   app.add_option("--client-ca", options.client_ca,
                  "PEM file; a caller's certificate that it has signed proves who calls");
   app.add_option("--drain", drain_seconds, "seconds that calls under way have left at a stop")

@@ -21,11 +21,13 @@
 #include "server/app/data_folder.h"
 #include "server/app/listen_address.h"
 #include "server/app/profile_watch.h"
+#include "server/app/tenants_watch.h"
 #include "server/leases/deadline_watch.h"
 #include "server/leases/duty_runner.h"
 #include "server/leases/lease_reaper.h"
 #include "server/replicas/progress_follower.h"
 #include "server/retention/artifact_cleaner.h"
+#include "server/retention/checkpoint_cleaner.h"
 #include "server/retention/job_retention.h"
 #include "server/retention/progress_thinning.h"
 #include "server/store/postgres_store.h"
@@ -43,7 +45,9 @@ constexpr Milliseconds kDay = 24 * kHour;
 constexpr Milliseconds kRetentionEvery{60'000};
 constexpr Milliseconds kUnused = kDay;  // an upload waits so long for its submission
 constexpr Milliseconds kCleanEvery{3'600'000};
-constexpr Milliseconds kProfilesEvery{1'000};
+constexpr Milliseconds kCheckpointsEvery{10'000};
+constexpr Milliseconds kCheckpointGrace{60'000};
+constexpr Milliseconds kReloadEvery{1'000};  // a look at the profiles and the tenants
 constexpr int kDatabaseSessions = 16;
 constexpr int kLargestMessageBytes = 4 << 20;
 constexpr const char* kServices[] = {"skinframe.v1.JobService", "skinframe.v1.ArtifactService",
@@ -88,23 +92,11 @@ absl::StatusOr<std::shared_ptr<grpc::ServerCredentials>> credentials(const Serve
   return grpc::SslServerCredentials(tls);
 }
 
-// INVALID_ARGUMENT names what is wrong in the file.
-absl::StatusOr<TenantDirectory> read_tenants(const ServerOptions& options) {
-  if (options.tenants.empty()) return TenantDirectory();
-  const auto text = read_whole_file(options.tenants);
-  if (!text.ok()) return text.status();
-  auto config = parse_tenants(*text);
-  if (!config.ok())
-    return absl::InvalidArgumentError(
-        fmt::format("--tenants {}: {}", options.tenants.string(), std::string(config.status().message())));
-  return TenantDirectory(*std::move(config));
-}
-
 }  // namespace
 
 // In the order in which each needs those before it.
 struct Server::Rooms {
-  Rooms(DataFolder locked, TenantDirectory callers, const ServerOptions& options, Catalog known)
+  Rooms(DataFolder locked, TenantsConfig callers, const ServerOptions& options, Catalog known)
       : folder(std::move(locked)),
         tenants(std::move(callers)),
         policy(options.policy),
@@ -128,7 +120,9 @@ struct Server::Rooms {
   std::optional<JobRetention> retention;
   std::optional<ProgressThinning> thinning;
   std::optional<ArtifactCleaner> cleaner;
+  std::optional<CheckpointCleaner> checkpoint_cleaner;
   std::optional<ProfileWatch> profile_watch;  // where the operator has a folder
+  std::optional<TenantsWatch> tenants_watch;  // where the operator has a file
   std::optional<DutyRunner> duties;
   std::optional<JobService> jobs;
   std::optional<ArtifactService> files;
@@ -170,8 +164,10 @@ absl::Status Server::Rooms::open(const ServerOptions& options, const Clock& cloc
   if (options.keep_progress_hours > 0)
     all.push_back(&thinning.emplace(*store, options.keep_progress_hours * kHour, kRetentionEvery));
   all.push_back(&cleaner.emplace(*store, *artifacts, kUnused, kCleanEvery));
+  all.push_back(&checkpoint_cleaner.emplace(*store, *artifacts, kCheckpointsEvery, kCheckpointGrace));
   if (!options.profiles.empty())
-    all.push_back(&profile_watch.emplace(options.profiles, catalog, kProfilesEvery));
+    all.push_back(&profile_watch.emplace(options.profiles, catalog, kReloadEvery));
+  if (!options.tenants.empty()) all.push_back(&tenants_watch.emplace(options.tenants, tenants, kReloadEvery));
   duties.emplace(clock, all, kDutyPause);
   return absl::OkStatus();
 }
@@ -208,7 +204,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::start(const ServerOptions& optio
   if (!folder.ok()) return folder.status();
   auto known = options.profiles.empty() ? built_in_catalog() : load_catalog(options.profiles);
   if (!known.ok()) return known.status();
-  auto tenants = read_tenants(options);
+  auto tenants = options.tenants.empty() ? one_tenant_for_all() : read_tenants(options.tenants);
   if (!tenants.ok()) return tenants.status();
   std::unique_ptr<Server> server(new Server(
       std::make_unique<Rooms>(*std::move(folder), *std::move(tenants), options, *std::move(known))));
@@ -227,8 +223,9 @@ Server::~Server() { stop(); }
 
 const std::string& Server::address() const { return rooms_->address; }
 
-void Server::reload_profiles() {
+void Server::reload() {
   if (rooms_->profile_watch) rooms_->profile_watch->reload();
+  if (rooms_->tenants_watch) rooms_->tenants_watch->reload();
 }
 
 void Server::stop() {

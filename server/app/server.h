@@ -24,8 +24,9 @@ class Server {
 
   const std::string& address() const;  // host:port as bound
 
-  // Reads the profile folder again, if there is one: within a tenth of a second. A bad file changes nothing.
-  void reload_profiles();
+  // Reads the profile folder and the tenants file again, where there are such: within a tenth of a second.
+  // What is bad changes nothing.
+  void reload();
 
   // Takes no new calls (UNAVAILABLE); ends watches and waiting leases with UNAVAILABLE, to go on elsewhere or
   // later; gives calls under way the time of --drain. What was acknowledged is durable with or without it.

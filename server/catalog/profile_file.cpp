@@ -10,7 +10,7 @@
 #include <cmath>
 #include <map>
 
-#include "server/catalog/lined_json.h"
+#include "server/lined_json/lined_json.h"
 
 namespace skinframe::server {
 namespace {

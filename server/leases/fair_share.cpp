@@ -9,7 +9,7 @@ namespace skinframe::server {
 std::vector<std::string> FairShare::order(const std::vector<TenantLoad>& waiting) {
   std::vector<std::tuple<double, double, std::string>> turns;  // running / weight, pass, name
   for (const TenantLoad& load : waiting) {
-    const TenantRule& rule = tenants_.rule_of(load.tenant);
+    const TenantRule rule = tenants_.rule_of(load.tenant);
     if (load.running >= rule.most_running) continue;
     double& pass = pass_.try_emplace(load.tenant, now_).first->second;
     pass = std::max(pass, now_ - 1 / rule.weight);

@@ -5,15 +5,20 @@
 
 #include <vector>
 
+#include "server/jobs/transitions.h"
+
 namespace skinframe::server {
 namespace {
 constexpr int kPage = 200;
 }
 
-std::set<std::string> artifacts_of(const v1::Job& job) {
+std::set<std::string> artifacts_of(const ListPage::Entry& entry) {
+  const v1::Job& job = entry.job;
   std::set<std::string> names = {job.spec().mesh_sha256(), job.spec().frame_problem_sha256()};
   for (const v1::ResultFile& file : job.files()) names.insert(file.sha256());
   names.insert(job.checkpoint().sha256());
+  if (!is_final(job.state()))
+    for (const v1::ResultFile& file : entry.warm_start_files) names.insert(file.sha256());
   names.erase("");
   return names;
 }
@@ -25,7 +30,7 @@ absl::Status ArtifactCleaner::keep_referred(std::set<std::string>& candidates) {
     const auto page = store_.list(query);
     if (!page.ok()) return page.status();
     for (const ListPage::Entry& entry : page->entries) {
-      for (const std::string& name : artifacts_of(entry.job)) candidates.erase(name);
+      for (const std::string& name : artifacts_of(entry)) candidates.erase(name);
       query.before_ordinal = entry.ordinal;
     }
     more = page->more;

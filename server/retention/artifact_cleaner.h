@@ -18,8 +18,9 @@
 
 namespace skinframe::server {
 
-// All artifacts that the job refers to: its input, its results, its checkpoint.
-std::set<std::string> artifacts_of(const v1::Job& job);
+// All artifacts that the job refers to: its input, its results, its checkpoint, and until it has ended the
+// files of a warm start.
+std::set<std::string> artifacts_of(const ListPage::Entry& entry);
 
 class ArtifactCleaner final : public Duty {
  public:

@@ -28,4 +28,9 @@ CREATE INDEX jobs_thin     ON jobs (end_ms) WHERE state > 2 AND thinned = 0;
 CREATE INDEX jobs_tenant   ON jobs (tenant, ordinal);
 )sql";
 
+// Files that were a job's checkpoint and are not any more, until somebody has seen to them.
+inline constexpr char kDroppedCheckpoints[] =
+    "CREATE TABLE dropped_checkpoints (tenant TEXT NOT NULL, sha256 TEXT NOT NULL, "
+    "PRIMARY KEY (tenant, sha256))";
+
 }  // namespace skinframe::server

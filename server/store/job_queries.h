@@ -184,7 +184,8 @@ absl::StatusOr<ListPage> list_jobs(Database& database, const ListQuery& query) {
     }
     auto row = read_row(select);
     if (!row.ok()) return row.status();
-    page.entries.push_back({std::move(row->record.job), row->ordinal});
+    page.entries.push_back(
+        {std::move(row->record.job), row->ordinal, std::move(row->record.warm_start_files)});
   }
   if (!select.status().ok()) return select.status();
   return page;
@@ -258,6 +259,43 @@ absl::StatusOr<std::map<std::string, std::int64_t>> read_last_sequences(
     if (!select.status().ok()) return select.status();
   }
   return last;
+}
+
+// Writes a decision on the row, which is as it was before; after: the record as it shall be, and then is.
+template <class Database>
+absl::Status write_decision(Database& database, const JobRow& row, JobRecord& after,
+                            std::vector<v1::JobEvent> events) {
+  const std::string& checkpoint = row.record.job.checkpoint().sha256();
+  if (!checkpoint.empty() && checkpoint != after.job.checkpoint().sha256()) {
+    typename Database::Statement drop(database,
+                                      "INSERT INTO dropped_checkpoints (tenant, sha256) VALUES (?, ?) "
+                                      "ON CONFLICT (tenant, sha256) DO NOTHING");
+    absl::Status status = drop.bind_text(row.record.job.tenant()).bind_text(checkpoint).run();
+    if (!status.ok()) return status;
+  }
+  return write_change(database, row.ordinal, after, std::move(events));
+}
+
+template <class Database>
+absl::StatusOr<std::vector<DroppedCheckpoint>> read_dropped(Database& database, int limit) {
+  typename Database::Statement select(
+      database, "SELECT tenant, sha256 FROM dropped_checkpoints ORDER BY tenant, sha256 LIMIT ?");
+  std::vector<DroppedCheckpoint> dropped;
+  select.bind(limit);
+  while (select.step()) dropped.push_back({select.bytes(0), select.bytes(1)});
+  if (!select.status().ok()) return select.status();
+  return dropped;
+}
+
+template <class Database>
+absl::Status forget_dropped_rows(Database& database, const std::vector<DroppedCheckpoint>& seen_to) {
+  for (const DroppedCheckpoint& row : seen_to) {
+    typename Database::Statement erase(database,
+                                       "DELETE FROM dropped_checkpoints WHERE tenant = ? AND sha256 = ?");
+    absl::Status status = erase.bind_text(row.tenant).bind_text(row.sha256).run();
+    if (!status.ok()) return status;
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace skinframe::server

@@ -14,6 +14,7 @@
 // RESOURCE_EXHAUSTED (disk full), INTERNAL (damaged).
 #pragma once
 
+#include <compare>
 #include <cstdint>
 #include <functional>
 #include <limits>
@@ -55,6 +56,13 @@ struct QueueLimits {
   std::int64_t of_tenant;  // of the job's own
 };
 
+// An artifact that was a job's checkpoint: replaced by a newer one, or the job has ended.
+struct DroppedCheckpoint {
+  std::string tenant;
+  std::string sha256;
+  auto operator<=>(const DroppedCheckpoint&) const = default;
+};
+
 // A tenant that has queued jobs, and how many of its jobs are running.
 struct TenantLoad {
   std::string tenant;
@@ -73,6 +81,8 @@ struct ListPage {
   struct Entry {
     v1::Job job;
     std::int64_t ordinal;  // of submission: where the next page begins
+    std::vector<v1::ResultFile>
+        warm_start_files;  // that the job starts from; of an earlier one, perhaps deleted
   };
   std::vector<Entry> entries;  // newest first
   bool more = false;
@@ -140,6 +150,12 @@ class JobStore {
   // Forgets the progress events of at most so many jobs that ended at or before a time; how many jobs.
   // Changes of state and results of printers stay, under their numbers.
   virtual absl::StatusOr<int> thin_progress(Time until, int most_jobs) = 0;
+
+  // Checkpoints that modify() has taken from their jobs, until they are forgotten here. The file may be in
+  // use all the same: another job may have come to the same one. Each is told once however often it was
+  // dropped.
+  virtual absl::StatusOr<std::vector<DroppedCheckpoint>> dropped_checkpoints(int limit) = 0;
+  virtual absl::Status forget_dropped(const std::vector<DroppedCheckpoint>& seen_to) = 0;
 
   // The sequence number of the newest event of each of these jobs; unknown ones are left out.
   virtual absl::StatusOr<std::map<std::string, std::int64_t>> last_sequences(

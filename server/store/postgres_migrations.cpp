@@ -66,7 +66,8 @@ constexpr char kRankColumn[] = "ALTER TABLE jobs ADD COLUMN rank_ms BIGINT NOT N
 
 constexpr std::array kMigrations = {
     Migration{1, "jobs and events", kJobsAndEvents}, Migration{2, "index of ended jobs", kEndedIndex},
-    Migration{3, "rank in the queue", kRankColumn}, Migration{4, "tenants, reuse, thinning", kTenants}};
+    Migration{3, "rank in the queue", kRankColumn}, Migration{4, "tenants, reuse, thinning", kTenants},
+    Migration{5, "dropped checkpoints", kDroppedCheckpoints}};
 
 }  // namespace
 

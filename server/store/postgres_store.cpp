@@ -64,7 +64,7 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
       }
       after = std::move((*change)->record);
       state_changed = after.job.state() != row->record.job.state();
-      return write_change(session, row->ordinal, after, std::move((*change)->events));
+      return write_decision(session, *row, after, std::move((*change)->events));
     });
     if (!status.ok()) return status;
     if (changed) committed(after, state_changed);
@@ -110,6 +110,10 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
     });
     if (!status.ok()) return status;
     return thinned;
+  }
+
+  absl::Status forget_dropped(const std::vector<DroppedCheckpoint>& seen_to) override {
+    return pool_.transact([&](PostgresSession& session) { return forget_dropped_rows(session, seen_to); });
   }
 
  private:

@@ -54,6 +54,10 @@ class SqlReads : public JobStore {
     return overdue(kEndedJobs, until, limit);
   }
 
+  absl::StatusOr<std::vector<DroppedCheckpoint>> dropped_checkpoints(int limit) final {
+    return source().with([&](Database& database) { return read_dropped(database, limit); });
+  }
+
   absl::StatusOr<std::map<std::string, std::int64_t>> last_sequences(
       const std::vector<std::string>& job_ids) final {
     return source().with([&](Database& database) { return read_last_sequences(database, job_ids); });

@@ -50,7 +50,7 @@ class SqliteStore final : public SqlReads<SqliteDatabase, SqliteReaders> {
       }
       after = std::move((*change)->record);
       state_changed = after.job.state() != row->record.job.state();
-      return write_change(database, row->ordinal, after, std::move((*change)->events));
+      return write_decision(database, *row, after, std::move((*change)->events));
     };
     const auto tell = [&] {
       if (changed) committed(after, state_changed);
@@ -105,6 +105,11 @@ class SqliteStore final : public SqlReads<SqliteDatabase, SqliteReaders> {
     };
     if (absl::Status status = writer_.write(work, [] {}); !status.ok()) return status;
     return thinned;
+  }
+
+  absl::Status forget_dropped(const std::vector<DroppedCheckpoint>& seen_to) override {
+    return writer_.write([&](SqliteDatabase& database) { return forget_dropped_rows(database, seen_to); },
+                         [] {});
   }
 
  private:

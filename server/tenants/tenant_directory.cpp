@@ -36,38 +36,54 @@ std::string tenant_of_identity(const std::string& identity) {
   return is_tenant_name(name) ? name : "id-" + sha256_hex(identity).substr(0, 32);
 }
 
-TenantDirectory::TenantDirectory() {
-  config_.others = kDefaultTenant;
-  config_.workers_are_all = true;
+TenantsConfig one_tenant_for_all() {
+  TenantsConfig config;
+  config.others = kDefaultTenant;
+  config.workers_are_all = true;
+  return config;
 }
 
-TenantDirectory::TenantDirectory(TenantsConfig config) : config_(std::move(config)) {
-  for (const TenantsConfig::Tenant& tenant : config_.tenants) rules_[tenant.name] = tenant.rule;
+TenantDirectory::TenantDirectory(TenantsConfig config) { replace(std::move(config)); }
+
+void TenantDirectory::replace(TenantsConfig config) {
+  State next{std::move(config), {}};
+  for (const TenantsConfig::Tenant& tenant : next.config.tenants) next.rules[tenant.name] = tenant.rule;
+  auto made = std::make_shared<const State>(std::move(next));
+  const std::lock_guard lock(mutex_);
+  state_.swap(made);
+}
+
+std::shared_ptr<const TenantDirectory::State> TenantDirectory::current() const {
+  const std::lock_guard lock(mutex_);
+  return state_;
 }
 
 absl::StatusOr<std::string> TenantDirectory::tenant_of(const Caller& caller) const {
+  const auto state = current();
+  const TenantsConfig& config = state->config;
   if (!caller.identity.empty()) {
-    for (const auto& tenant : config_.tenants)
+    for (const auto& tenant : config.tenants)
       if (has(tenant.known_by.identities, caller.identity)) return tenant.name;
     return tenant_of_identity(caller.identity);
   }
   if (!caller.token.empty()) {
     const std::string digest = sha256_hex(caller.token);
-    for (const auto& tenant : config_.tenants)
+    for (const auto& tenant : config.tenants)
       if (has(tenant.known_by.token_sha256, digest)) return tenant.name;
-    if (!config_.tenants.empty())
+    if (!config.tenants.empty())
       return absl::UnauthenticatedError("the token is not one that the server knows");
   }
-  for (const auto& tenant : config_.tenants)
+  for (const auto& tenant : config.tenants)
     if (by_address(tenant.known_by, caller)) return tenant.name;
-  if (!config_.others.empty()) return config_.others;
+  if (!config.others.empty()) return config.others;
   return absl::UnauthenticatedError(
       "the server does not know whose caller this is: give a token or a client certificate that it knows");
 }
 
 absl::Status TenantDirectory::permit_work(const Caller& caller) const {
-  if (config_.workers_are_all) return absl::OkStatus();
-  const Credentials& known = config_.workers;
+  const auto state = current();
+  if (state->config.workers_are_all) return absl::OkStatus();
+  const Credentials& known = state->config.workers;
   if (!caller.identity.empty() && has(known.identities, caller.identity)) return absl::OkStatus();
   if (!caller.token.empty() && has(known.token_sha256, sha256_hex(caller.token))) return absl::OkStatus();
   if (by_address(known, caller)) return absl::OkStatus();
@@ -76,9 +92,10 @@ absl::Status TenantDirectory::permit_work(const Caller& caller) const {
       "server's tenants file");
 }
 
-const TenantRule& TenantDirectory::rule_of(const std::string& tenant) const {
-  const auto known = rules_.find(tenant);
-  return known == rules_.end() ? config_.other_tenants : known->second;
+TenantRule TenantDirectory::rule_of(const std::string& tenant) const {
+  const auto state = current();
+  const auto known = state->rules.find(tenant);
+  return known == state->rules.end() ? state->config.other_tenants : known->second;
 }
 
 }  // namespace skinframe::server

@@ -9,6 +9,8 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -54,11 +56,16 @@ struct TenantsConfig {
   bool workers_are_all = false;
 };
 
+// Everybody is the default tenant, without limits, and everybody may work.
+TenantsConfig one_tenant_for_all();
+
+// From any thread. A call is answered by one configuration: the one before an exchange or the one after it.
 class TenantDirectory {
  public:
-  // Everybody is the default tenant, without limits, and everybody may work.
-  TenantDirectory();
-  explicit TenantDirectory(TenantsConfig config);
+  explicit TenantDirectory(TenantsConfig config = one_tenant_for_all());
+
+  // The next calls are answered by this one.
+  void replace(TenantsConfig config);
 
   // UNAUTHENTICATED: nobody knows the caller.
   absl::StatusOr<std::string> tenant_of(const Caller& caller) const;
@@ -66,11 +73,17 @@ class TenantDirectory {
   // PERMISSION_DENIED: not a worker.
   absl::Status permit_work(const Caller& caller) const;
 
-  const TenantRule& rule_of(const std::string& tenant) const;
+  TenantRule rule_of(const std::string& tenant) const;
 
  private:
-  TenantsConfig config_;
-  std::map<std::string, TenantRule> rules_;
+  struct State {
+    TenantsConfig config;
+    std::map<std::string, TenantRule> rules;
+  };
+  std::shared_ptr<const State> current() const;
+
+  mutable std::mutex mutex_;
+  std::shared_ptr<const State> state_;  // guarded by mutex_
 };
 
 // [a-z0-9._-]{1,63}, and no dot in front.
@@ -80,8 +93,8 @@ bool is_tenant_name(std::string_view name);
 // made of its hash.
 std::string tenant_of_identity(const std::string& identity);
 
-// Reads the file of --tenants; tenants_file.cpp has an example. INVALID_ARGUMENT names what is wrong and
-// where.
-absl::StatusOr<TenantsConfig> parse_tenants(const std::string& json);
+// Reads the text of --tenants; tenants_file.cpp has an example. INVALID_ARGUMENT "FILE:LINE: FIELD: what is
+// wrong".
+absl::StatusOr<TenantsConfig> parse_tenants(const std::string& json, const std::string& file);
 
 }  // namespace skinframe::server

@@ -29,10 +29,10 @@ std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 FaultFarm::FaultFarm(const std::filesystem::path& scratch, const FarmShape& shape,
                      const std::filesystem::path& data)
-    : scratch_(scratch), data_(data.empty() ? scratch : data) {
+    : scratch_(scratch), data_(data.empty() || shape.store == Store::kPostgres ? scratch : data) {
   if (shape.store == Store::kPostgres) {
     database_ = std::make_unique<server::PostgresServer>();
-    store_flags_ = {"--store", database_->new_database(), "--artifacts", scratch_ / "artifacts"};
+    store_flags_ = {"--store", database_->new_database(data), "--artifacts", scratch_ / "artifacts"};
   }
   addresses_.resize(at(shape.servers));
   servers_.resize(at(shape.servers));

@@ -29,7 +29,8 @@ struct Kills {
 
 class FaultFarm {
  public:
-  // Leases of 1 s, so that takeovers are seen. data: where the servers' folders are made; empty: in scratch.
+  // Leases of 1 s, so that takeovers are seen. data: where what the store keeps
+  // is made, the servers' folders or the database's tables; empty: in scratch, or with the database's own.
   FaultFarm(const std::filesystem::path& scratch, const FarmShape& shape,
             const std::filesystem::path& data = {});
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The server's disk is full: it says so, loses nothing, and goes on once there is room.
+// The disk of the server, or of its database, is full: it says so, loses nothing, and goes on once there is
+// room.
 #include <sys/mount.h>
 
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <optional>
 
 #include "tests/faults/fault_test.h"
 
@@ -57,18 +59,24 @@ class FullDisk : public FaultTest {
     if (status.ok()) witness_->watch_also(response.job().job_id());
     return status;
   }
-  SmallDisk disk_{scratch_ / "disk", "8m"};  // goes before the scratch folder
+  // The store's disk is full, twice; words: of the refusal.
+  void expect_told_and_nothing_lost(Store store, const char* size, const std::string& words);
+
+ private:
+  std::optional<SmallDisk> disk_;  // goes before the scratch folder
 };
 
-TEST_F(FullDisk, IsToldLosesNothingAndIsLeftBehindWhenThereIsRoom) {
-  if (!disk_.mounted()) {
+void FullDisk::expect_told_and_nothing_lost(Store store, const char* size, const std::string& words) {
+  std::filesystem::permissions(scratch_.path(), std::filesystem::perms::all);  // also for user postgres
+  disk_.emplace(scratch_ / "disk", size);
+  if (!disk_->mounted()) {
     GTEST_SKIP() << "THE FULL DISK IS NOT TESTED: a tmpfs cannot be mounted here: " << std::strerror(errno);
   }
-  begin({Store::kSqlite, 1, 0}, disk_.path());
+  begin({store, 1, 0}, disk_->path());
   if (HasFatalFailure()) return;
   for (int i = 0; i < 5; ++i) witness_->submit(frame_job());
 
-  disk_.fill();
+  disk_->fill();
   grpc::Status refused;
   int taken = 0;  // there may be room within the store's own files
   for (; taken < 2000; ++taken) {
@@ -76,8 +84,7 @@ TEST_F(FullDisk, IsToldLosesNothingAndIsLeftBehindWhenThereIsRoom) {
     if (!refused.ok()) break;
   }
   EXPECT_EQ(refused.error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED) << refused.error_message();
-  EXPECT_NE(refused.error_message().find("no room on the server's disk"), std::string::npos)
-      << refused.error_message();
+  EXPECT_NE(refused.error_message().find(words), std::string::npos) << refused.error_message();
   // Reading goes on.
   grpc::ClientContext list_context;
   v1::ListJobsResponse page;
@@ -89,19 +96,27 @@ TEST_F(FullDisk, IsToldLosesNothingAndIsLeftBehindWhenThereIsRoom) {
   farm_->start_worker(0);
   EXPECT_TRUE(farm_->server(0)->running());
 
-  disk_.make_room();
+  disk_->make_room();
   EXPECT_TRUE(witness_->wait(seconds(30), [&] { return submit_once(frame_job(), "after").ok(); }));
   EXPECT_TRUE(witness_->wait_for_all(seconds(120)));
 
   // Once more, and the server dies while the disk is full.
-  disk_.fill();
+  disk_->fill();
   for (int i = 0; i < 2000 && submit_once(frame_job(), "again-" + std::to_string(i)).ok(); ++i) {
   }
   farm_->kill_server(0);
-  disk_.make_room();
+  disk_->make_room();
   farm_->start_server(0);
   std::printf("%d jobs were taken on the full disk before the first was refused\n", taken);
   expect_all_well(seconds(120));
+}
+
+TEST_F(FullDisk, IsToldLosesNothingAndIsLeftBehindWhenThereIsRoom) {
+  expect_told_and_nothing_lost(Store::kSqlite, "8m", "no room on the server's disk");
+}
+
+TEST_F(FullDisk, OfTheDatabaseIsToldLosesNothingAndIsLeftBehindWhenThereIsRoom) {
+  expect_told_and_nothing_lost(Store::kPostgres, "24m", "no room on the database's disk");
 }
 
 }  // namespace

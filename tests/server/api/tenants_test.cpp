@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tenants do not see each other, take no more than their quotas, and workers serve them all.
+#include <chrono>
 #include <fstream>
+#include <thread>
 
 #include "tests/server/api/api_fixture.h"
 
@@ -175,6 +177,28 @@ TEST_F(Tenants, QuotasAreNamedWithTheirRemedyAndQueuedOnesCanBeRetried) {
   token_ = "south";
   submit();
   EXPECT_TRUE(upload(header("12345678"), {"12345678"}).ok());
+}
+
+TEST_F(Tenants, TheFileIsReadAgainAndABadOneKeepsWhoWasWhose) {
+  token_ = "north";
+  const std::string first = submit();
+  v1::SubmitJobRequest second;
+  *second.mutable_spec() = spec();
+  second.set_no_reuse(true);
+  write_tenants(R"("most_queued": 1)");
+  server_->reload();
+  while (submit(second).ok()) std::this_thread::yield();  // the duty has its round every 100 ms
+  EXPECT_EQ(submit(second).error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+  write_tenants(R"("most_queued": "many")");
+  server_->reload();
+  const auto asked = std::chrono::steady_clock::now();
+  while (std::chrono::steady_clock::now() - asked < std::chrono::milliseconds(300)) {
+    EXPECT_EQ(submit(second).error_code(), grpc::StatusCode::RESOURCE_EXHAUSTED);
+    EXPECT_EQ(get(first), grpc::StatusCode::OK);
+  }
+  write_tenants("");
+  server_->reload();
+  while (!submit(second).ok()) std::this_thread::yield();
 }
 
 TEST_F(Tenants, WorkersTakeTurnsAndTheQuotaOfRunningJobsHoldsTheRestBack) {

@@ -176,6 +176,52 @@ TEST_P(JobStoreConformance, ConcurrentLeasesNeverGiveOneJobTwice) {
   EXPECT_EQ(ids.size(), static_cast<std::size_t>(kJobs));
 }
 
+TEST_P(JobStoreConformance, ACompletionAndTheReaperAtTheSameMomentMoveTheJobOnce) {
+  for (int round = 0; round < 20; ++round) {
+    const std::string id = "job-" + std::to_string(round);
+    create(id);
+    const auto job = lease();
+    ASSERT_TRUE(job);
+    const Time expiry = kNoon + kPolicy.lease;
+    const auto done = completion(id, job->lease.fencing_token, v1::JOB_STATE_SUCCEEDED);
+    absl::Status completed, reaped;
+    std::thread worker([&] {
+      completed =
+          store_->modify(id, [&](const JobRecord& r) { return decide_complete(r, done, expiry, kPolicy); })
+              .status();
+    });
+    reaped = store_->modify(id, [&](const JobRecord& r) { return decide_lease_expired(r, expiry, kPolicy); })
+                 .status();
+    worker.join();
+    EXPECT_TRUE(reaped.ok()) << reaped;
+    const bool succeeded = store_->get(id)->job.state() == v1::JOB_STATE_SUCCEEDED;
+    EXPECT_EQ(completed.ok(), succeeded) << completed;
+    EXPECT_TRUE(succeeded || absl::IsAborted(completed)) << completed;
+    EXPECT_EQ(store_->events(id, 0, 10)->size(), 3u) << "queued, running, and one of the two";
+    EXPECT_TRUE(cancel(id).ok());  // out of the next round's way
+  }
+}
+
+TEST_P(JobStoreConformance, AWorkerOfTheSameNameThatRestartsIsAnotherWorker) {
+  create("a");
+  const auto first = lease();
+  ASSERT_TRUE(store_
+                  ->modify("a",
+                           [&](const JobRecord& job) {
+                             return decide_lease_expired(job, kNoon + kPolicy.lease, kPolicy);
+                           })
+                  .ok());
+  const auto second = lease(store_->get("a")->not_before);
+  ASSERT_TRUE(first && second);
+  EXPECT_EQ(first->lease.worker_id, second->lease.worker_id);
+  EXPECT_TRUE(absl::IsAborted(beat("a", first->lease.fencing_token, 1).status()));
+  const auto late = completion("a", first->lease.fencing_token, v1::JOB_STATE_SUCCEEDED);
+  EXPECT_TRUE(absl::IsAborted(
+      store_->modify("a", [&](const JobRecord& job) { return decide_complete(job, late, kNoon, kPolicy); })
+          .status()));
+  EXPECT_TRUE(beat("a", second->lease.fencing_token, 1).ok());
+}
+
 TEST_P(JobStoreConformance, FindsExpiredLeasesAndPassedDeadlinesOldestFirst) {
   for (const char* id : {"b", "a"}) {
     Change job = example_job(id);

@@ -65,5 +65,17 @@ TEST(TenantName, AnIdentityBecomesANameThatIsSafeAsAFolder) {
   EXPECT_FALSE(is_tenant_name(std::string(64, 'a')));
 }
 
+TEST(TenantDirectory, AnExchangeHoldsFromTheNextCallOn) {
+  TenantDirectory directory;
+  TenantsConfig closed;
+  closed.tenants.push_back({"north", {}, {{"n.example"}, {}, {}}});
+  closed.tenants[0].rule.most_queued = 7;
+  directory.replace(closed);
+  EXPECT_EQ(*directory.tenant_of({"n.example", "", ""}), "north");
+  EXPECT_TRUE(absl::IsUnauthenticated(directory.tenant_of({"", "", "ipv4:10.1.2.3:1"}).status()));
+  EXPECT_TRUE(absl::IsPermissionDenied(directory.permit_work({})));
+  EXPECT_EQ(directory.rule_of("north").most_queued, 7);
+}
+
 }  // namespace
 }  // namespace skinframe::server

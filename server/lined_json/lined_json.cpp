@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "server/catalog/lined_json.h"
+#include "server/lined_json/lined_json.h"
 
 #include <fmt/format.h>
 
