@@ -6,6 +6,7 @@
 
 #include "server/artifacts/tenant_artifacts.h"
 #include "server/catalog/live_catalog.h"
+#include "server/events/event_pages.h"
 #include "server/events/watch_hub.h"
 #include "server/executor/executor.h"
 #include "server/jobs/attempt_policy.h"
@@ -23,6 +24,7 @@ struct Parts {
   const TenantDirectory& tenants;
   const LiveCatalog& catalog;
   WatchHub& hub;
+  EventPages& pages;
   LeaseDesk& desk;
   Executor& executor;
   const Clock& clock;

@@ -10,10 +10,6 @@
 #include "server/jobs/transitions.h"
 
 namespace skinframe::server {
-namespace {
-constexpr int kPage = 64;
-}
-
 grpc::ServerWriteReactor<v1::JobEvent>* WatchCall::start(const Parts& parts,
                                                          grpc::CallbackServerContext& context,
                                                          const std::string& job_id,
@@ -47,10 +43,10 @@ void WatchCall::read_page() {
       news_ = false;  // what is committed from here on wakes again
     }
     if (stopped()) return;
-    auto events = parts_.store.events(job_id_, sequence_, kPage);
-    if (!events.ok()) return end(events.status());
-    if (!events->empty()) {
-      page_ = *std::move(events);
+    auto page = parts_.pages.after(job_id_, sequence_);
+    if (!page.ok()) return end(page.status());
+    if (!page->events->empty()) {
+      page_ = *std::move(page);
       next_ = 0;
       return write_next();
     }
@@ -63,12 +59,13 @@ void WatchCall::read_page() {
 
 void WatchCall::write_next() {
   if (stopped()) return;
-  if (page_[next_].sequence() != sequence_ + 1) return end_before(page_[next_]);
+  const v1::JobEvent& event = (*page_.events)[next_];
+  if (event.sequence() != sequence_ + 1) return end_before(event);
   {
     const std::lock_guard lock(mutex_);
     phase_ = Phase::kWriting;
   }
-  StartWrite(&page_[next_]);
+  StartWrite(&event);
 }
 
 void WatchCall::end_before(const v1::JobEvent& next) {
@@ -80,13 +77,15 @@ void WatchCall::end_before(const v1::JobEvent& next) {
 
 void WatchCall::OnWriteDone(bool ok) {
   if (!ok) return end(absl::CancelledError("the client hung up"));
-  const v1::JobEvent& written = page_[next_];
+  const v1::JobEvent& written = (*page_.events)[next_];
   sequence_ = written.sequence();
   if (written.has_state() && is_final(written.state().state())) return end(absl::OkStatus());
-  if (++next_ < page_.size()) return write_next();
+  if (++next_ < page_.events->size()) return write_next();
   {
     const std::lock_guard lock(mutex_);
-    phase_ = Phase::kReading;
+    const bool all = page_.to_the_end && !news_ && !stop_;
+    phase_ = all ? Phase::kResting : Phase::kReading;
+    if (all) return;
   }
   read_later();
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// One WatchJob stream. It reads the store page by page from its own sequence number and writes one event at a
-// time; when there is nothing more it rests until the hub wakes it. So it holds one page of memory however
-// slow its client is, and it can neither miss nor repeat an event. Where events were thinned out it ends and
-// says where it goes on: nobody takes a gap for the whole.
+// One WatchJob stream. It reads page by page from its own sequence number and writes one event at a time;
+// when there is nothing more it rests until the hub wakes it. So it holds one page of memory, which it may
+// share, however slow its client is, and it can neither miss nor repeat an event. Where events were thinned
+// out it ends and says where it goes on: nobody takes a gap for the whole.
 #pragma once
 
 #include <cstdint>
@@ -55,8 +55,8 @@ class WatchCall final : public grpc::ServerWriteReactor<v1::JobEvent>,
   grpc::CallbackServerContext& context_;  // there until OnDone
   const std::string job_id_;
   std::int64_t sequence_;  // of the last event written
-  std::vector<v1::JobEvent> page_;
-  std::size_t next_ = 0;  // in page_
+  EventPage page_;
+  std::size_t next_ = 0;  // in the page
 
   std::mutex mutex_;  // guards what follows
   Phase phase_ = Phase::kReading;

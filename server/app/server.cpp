@@ -112,6 +112,9 @@ struct Server::Rooms {
   CommitBell bell{hub};
   std::unique_ptr<TenantArtifacts> artifacts;
   std::unique_ptr<JobStore> store;
+  EventPages pages{hub, [this](const std::string& job_id, std::int64_t after_sequence, int limit) {
+                     return store->events(job_id, after_sequence, limit);
+                   }};
   Executor executor{kExecutorThreads};
   std::optional<LeaseDesk> desk;
   std::optional<LeaseReaper> reaper;
@@ -151,8 +154,8 @@ absl::Status Server::Rooms::open(const ServerOptions& options, const Clock& cloc
   reaper.emplace(*store, policy, clock.now());
   deadlines.emplace(*store);
 
-  const Parts parts{*store, *artifacts,         tenants, catalog, hub, *desk, executor, clock, ids,
-                    policy, options.queue_limit};
+  const Parts parts{*store, *artifacts, tenants, catalog, hub,    pages,
+                    *desk,  executor,   clock,   ids,     policy, options.queue_limit};
   jobs.emplace(parts);
   files.emplace(parts);
   profiles.emplace(catalog);

@@ -14,7 +14,9 @@ absl::Status WatchHub::subscribe(const std::string& job_id, std::shared_ptr<Watc
   if (count_ >= most_watchers_) {
     return absl::ResourceExhaustedError(fmt::format("{} watchers are connected, which is the limit", count_));
   }
-  by_job_[job_id].push_back(std::move(watcher));
+  Watched& job = by_job_[job_id];
+  if (job.watchers.empty()) job.news = ++last_news_;
+  job.watchers.push_back(std::move(watcher));
   ++count_;
   return absl::OkStatus();
 }
@@ -23,7 +25,7 @@ void WatchHub::unsubscribe(const std::string& job_id, const Watcher* watcher) {
   const std::lock_guard lock(mutex_);
   const auto job = by_job_.find(job_id);
   if (job == by_job_.end()) return;
-  auto& watchers = job->second;
+  auto& watchers = job->second.watchers;
   const auto at =
       std::find_if(watchers.begin(), watchers.end(), [&](const auto& w) { return w.get() == watcher; });
   if (at == watchers.end()) return;
@@ -38,7 +40,8 @@ void WatchHub::wake(const std::string& job_id) {
     const std::lock_guard lock(mutex_);
     const auto job = by_job_.find(job_id);
     if (job == by_job_.end()) return;
-    watchers = job->second;
+    job->second.news = ++last_news_;
+    watchers = job->second.watchers;
   }
   for (const auto& watcher : watchers) watcher->wake();
 }
@@ -48,22 +51,28 @@ void WatchHub::wake_all() {
 }
 
 void WatchHub::close() {
-  std::unordered_map<std::string, std::vector<std::shared_ptr<Watcher>>> all;
+  std::unordered_map<std::string, Watched> all;
   {
     const std::lock_guard lock(mutex_);
     closed_ = true;
     all = by_job_;
   }
-  for (const auto& [job_id, watchers] : all) {
-    for (const auto& watcher : watchers) watcher->server_stops();
+  for (const auto& [job_id, job] : all) {
+    for (const auto& watcher : job.watchers) watcher->server_stops();
   }
+}
+
+std::uint64_t WatchHub::news(const std::string& job_id) const {
+  const std::lock_guard lock(mutex_);
+  const auto job = by_job_.find(job_id);
+  return job == by_job_.end() ? kUnknown : job->second.news;
 }
 
 std::vector<std::string> WatchHub::watched_jobs() const {
   const std::lock_guard lock(mutex_);
   std::vector<std::string> jobs;
   jobs.reserve(by_job_.size());
-  for (const auto& [job_id, watchers] : by_job_) jobs.push_back(job_id);
+  for (const auto& [job_id, job] : by_job_) jobs.push_back(job_id);
   return jobs;
 }
 

@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -38,14 +39,24 @@ class WatchHub {
   void wake_all();
   void close();  // tells all that the server stops; nobody subscribes any more
 
+  // Changes with each wake of a watched job, before its watchers are woken. kUnknown: nobody watches it.
+  static constexpr std::uint64_t kUnknown = 0;
+  std::uint64_t news(const std::string& job_id) const;
+
   std::size_t watchers() const;
   std::vector<std::string> watched_jobs() const;
 
  private:
+  struct Watched {
+    std::vector<std::shared_ptr<Watcher>> watchers;
+    std::uint64_t news = kUnknown;
+  };
+
   const std::size_t most_watchers_;
   mutable std::mutex mutex_;
-  std::unordered_map<std::string, std::vector<std::shared_ptr<Watcher>>> by_job_;
+  std::unordered_map<std::string, Watched> by_job_;
   std::size_t count_ = 0;
+  std::uint64_t last_news_ = kUnknown;  // one count for all jobs: no number comes twice
   bool closed_ = false;
 };
 

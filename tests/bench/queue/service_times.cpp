@@ -163,15 +163,18 @@ class WatchStream final : public grpc::ClientReadReactor<v1::JobEvent> {
     StartRead(&event_);
     StartCall();
   }
+  ~WatchStream() override {
+    context_.TryCancel();
+    ended_->get_future().wait();
+  }
   void OnReadDone(bool ok) override {
     if (!ok) return;
     tally_.saw(event_.sequence());
     StartRead(&event_);
   }
-  void OnDone(const grpc::Status&) override { done_.set_value(); }
-  void end() {
-    context_.TryCancel();
-    done_.get_future().wait();
+  void OnDone(const grpc::Status&) override {
+    const auto ended = ended_;  // the stream may be gone before set_value is back
+    ended->set_value();
   }
 
  private:
@@ -179,7 +182,7 @@ class WatchStream final : public grpc::ClientReadReactor<v1::JobEvent> {
   grpc::ClientContext context_;
   v1::WatchJobRequest request_;
   v1::JobEvent event_;
-  std::promise<void> done_;
+  const std::shared_ptr<std::promise<void>> ended_ = std::make_shared<std::promise<void>>();
 };
 
 }  // namespace
@@ -227,7 +230,6 @@ Broadcast measure_watchers(const server::ServerOptions& options, int watchers, i
     tally.wait();
     times.push_back(ms_since(begin));
   }
-  for (const auto& stream : streams) stream->end();
   return {spread_of(std::move(times)), watchers};
 }
 
