@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/queue/service_times.h"
 
+#include <fmt/format.h>
 #include <grpcpp/grpcpp.h>
 
 #include <algorithm>
@@ -140,10 +141,19 @@ class Tally {
     watchers_ = watchers;
     count_ = 0;
   }
+  void failed(const grpc::Status& status) {
+    const std::lock_guard lock(mutex_);
+    failure_ = status;
+    done_.notify_all();
+  }
   void wait() {
     std::unique_lock lock(mutex_);
-    if (!done_.wait_for(lock, std::chrono::minutes(1), [&] { return count_ == watchers_; }))
-      throw std::runtime_error("after a minute some watchers have not seen the event");
+    const bool woken =
+        done_.wait_for(lock, std::chrono::minutes(1), [&] { return count_ == watchers_ || !failure_.ok(); });
+    check(failure_, "watch");
+    if (!woken)
+      throw std::runtime_error(
+          fmt::format("after a minute {} of {} watchers have event {}", count_, watchers_, wanted_));
   }
 
  private:
@@ -153,6 +163,7 @@ class Tally {
   std::int64_t newest_ = 0;
   int watchers_ = 0;
   int count_ = 0;
+  grpc::Status failure_;
 };
 
 class WatchStream final : public grpc::ClientReadReactor<v1::JobEvent> {
@@ -172,7 +183,8 @@ class WatchStream final : public grpc::ClientReadReactor<v1::JobEvent> {
     tally_.saw(event_.sequence());
     StartRead(&event_);
   }
-  void OnDone(const grpc::Status&) override {
+  void OnDone(const grpc::Status& status) override {
+    if (!status.ok() && status.error_code() != grpc::StatusCode::CANCELLED) tally_.failed(status);
     const auto ended = ended_;  // the stream may be gone before set_value is back
     ended->set_value();
   }

@@ -100,6 +100,18 @@ TEST(PostgresStore, ALeaseWalksTheIndexAlsoWhenTheStatisticsKnowOfNoQueuedJob) {
   EXPECT_EQ(plan.find("Sort"), std::string::npos) << plan;
 }
 
+TEST(PostgresStore, AStatementThatMustSortIsNotCompiledForIt) {
+  const std::string where = shared_postgres().new_database();
+  open_at(where);
+  const auto session = *PostgresSession::open(where);
+  PostgresStatement explain(*session, "EXPLAIN ANALYZE SELECT job_id FROM jobs ORDER BY detail");
+  std::string plan;
+  while (explain.step()) plan += explain.bytes(0) + "\n";
+  ASSERT_TRUE(explain.status().ok()) << explain.status();
+  EXPECT_NE(plan.find("Sort"), std::string::npos) << plan;
+  EXPECT_EQ(plan.find("JIT"), std::string::npos) << plan;
+}
+
 TEST(PostgresStore, AServerHearsOfChangesOfStateMadeThroughAnotherAndNotOfItsOwn) {
   const std::string where = shared_postgres().new_database();
   Ear here;
