@@ -102,7 +102,7 @@ class BlockMesh {
   std::vector<std::array<int, 3>> triangles_;
   std::vector<char> dead_, locked_;
   std::vector<std::uint32_t> seen_;  // one a vertex: in which search for neighbours
-  std::vector<Slot> slots_;  // one a triangle
+  std::vector<Slot> slots_;          // one a triangle
   std::vector<int> first_corner_, next_corner_;
   std::vector<int> points_, first_point_, next_point_;
   std::uint32_t stamp_ = 0, vertex_stamp_ = 0;

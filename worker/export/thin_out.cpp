@@ -17,7 +17,9 @@ namespace {
 
 // The quadric error allowed in each pass, in deviations: cheap collapses come first everywhere.
 constexpr std::array kPasses = {0.15, 0.4, 1.0, 1.0};
-constexpr int kFirstUnbounded = 2;  // its steps are small, their order matters less
+// Where nothing is bounded the steps are small and their order matters less: each pass takes what is cheap
+// enough, and what it was refused may have room in the next.
+constexpr int kUnboundedPasses = 4;
 constexpr double kTrianglesABlock = 6000.0;
 constexpr double kBlocksInSurface = 2.0;  // of n^3 boxes about a body, some 2 n^2 hold surface
 constexpr int kMostBlocksAcross = 24;
@@ -150,9 +152,11 @@ Thinned thin_out(TriangleMesh& mesh, const ThinningOptions& options, const RunCo
   state.exact_stay = options.exact_stay;
   state.original = options.original;
   if (options.is_bounded) state.points = points_of(mesh, kLargeInDeviations * options.max_deviation_mm);
-  for (int pass = options.is_bounded ? 0 : kFirstUnbounded; pass < static_cast<int>(kPasses.size()); ++pass) {
+  const int passes = options.is_bounded ? static_cast<int>(kPasses.size()) : kUnboundedPasses;
+  for (int pass = 0; pass < passes; ++pass) {
     const std::size_t left = mesh.triangles.size();
     if (left <= options.triangles || context.cancelled()) break;
+    const double of_deviation = options.is_bounded ? kPasses[pass] : 1.0;
     const double share = static_cast<double>(options.triangles) / static_cast<double>(left);
     const auto blocks = blocks_of(mesh, Boxes(mesh, left, pass));
     state.gone.assign(left, 0);
@@ -161,7 +165,7 @@ Thinned thin_out(TriangleMesh& mesh, const ThinningOptions& options, const RunCo
       const auto least = static_cast<std::size_t>(share * static_cast<double>(blocks[b].own.size()));
       thin_block(
           state, blocks[b],
-          {kPasses[pass] * options.max_deviation_mm, options.max_deviation_mm, options.is_bounded, least});
+          {of_deviation * options.max_deviation_mm, options.max_deviation_mm, options.is_bounded, least});
     });
     drop_gone(state);
   }

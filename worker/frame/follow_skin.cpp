@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <new>
 #include <numbers>
 #include <optional>
@@ -15,6 +14,7 @@
 
 #include "worker/frame/flips.h"
 #include "worker/frame/half_edge.h"
+#include "worker/frame/on_m1.h"
 #include "worker/frame/point_tree.h"
 
 namespace skinframe {
@@ -31,7 +31,6 @@ constexpr double kTurnCosine = 0.7;          // of the normal at a node that mov
 constexpr double kOnM1InVoxels = 0.5;
 constexpr double kLeastDividedAngle = 0.1;  // radians, at the nodes across from a new one
 constexpr double kLeastShareOfEdge = 0.2;   // a new node's distance from both ends
-constexpr int kBisections = 20;
 
 class Following {
  public:
@@ -222,32 +221,12 @@ class Following {
     };
     for (const double share : {0.5, 0.35, 0.65}) {
       const Eigen::Vector3d from = a + share * (b - a);
-      if (const auto hit = along(from, normal, 0.5 * length); hit && fits(*hit)) return hit;
+      if (const auto hit = first_on_m1(from, normal, 0.5 * length, skin_); hit && fits(*hit)) return hit;
       if (const Eigen::Vector3d near = onto_m1(from, skin_); fits(near)) return near;
       // Beyond the field's outer band only the sampled surface knows where M1 is.
       if (!surface_) surface_.emplace(skin_.inner_surface.vertices);
       if (const Eigen::Vector3d near = onto_m1(surface_->point(surface_->nearest(from)), skin_); fits(near))
         return near;
-    }
-    return std::nullopt;
-  }
-
-  // The first crossing of M1 on the ray that leads towards it.
-  std::optional<Eigen::Vector3d> along(const Eigen::Vector3d& from, const Eigen::Vector3d& normal,
-                                       double reach) const {
-    const auto off = [&](double t) { return skin_.field.at(from + t * normal) + skin_.thickness_mm; };
-    const double start = off(0.0), sign = start < 0.0 ? 1.0 : -1.0;
-    double before = 0.0;
-    for (double t = skin_.voxel_mm; t <= reach; t += skin_.voxel_mm) {
-      if ((off(sign * t) < 0.0) != (start < 0.0)) {
-        double after = t;
-        for (int i = 0; i < kBisections; ++i) {
-          const double half = 0.5 * (before + after);
-          ((off(sign * half) < 0.0) == (start < 0.0) ? before : after) = half;
-        }
-        return from + sign * before * normal;
-      }
-      before = t;
     }
     return std::nullopt;
   }
@@ -288,30 +267,6 @@ constexpr int kFlipRounds = 3;
 constexpr int kRoundingRounds = 6;
 
 }  // namespace
-
-ChordDeviation chord_deviation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Skin& skin) {
-  ChordDeviation worst;
-  const int steps = std::clamp(static_cast<int>(std::ceil((b - a).norm() / skin.voxel_mm)), 8, 400);
-  for (int i = 1; i < steps; ++i) {
-    const double off = skin.field.at(a + (b - a) * (static_cast<double>(i) / steps)) + skin.thickness_mm;
-    worst.outward_mm = std::max(worst.outward_mm, off);
-    worst.inward_mm = std::max(worst.inward_mm, -off);
-  }
-  return worst;
-}
-
-Eigen::Vector3d onto_m1(const Eigen::Vector3d& p, const Skin& skin) {
-  Eigen::Vector3d q = p;
-  for (int step = 0; step < 5; ++step) {
-    const double off = skin.field.at(q) + skin.thickness_mm;
-    const Eigen::Vector3d gradient = skin.field.gradient(q);
-    const double slope = gradient.squaredNorm();
-    if (slope < 0.25) break;  // on the medial axis
-    q -= off / slope * gradient;
-    if (std::abs(off) < 0.05 * skin.voxel_mm) break;
-  }
-  return q;
-}
 
 Result<SkinFollowing> follow_skin(TriangleMesh& triangles, const std::vector<char>& held,
                                   std::vector<std::pair<int, int>>& kept, const Skin& skin,

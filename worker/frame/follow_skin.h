@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "worker/frame/frame.h"
+#include "worker/frame/on_m1.h"
 #include "worker/run/run_context.h"
 #include "worker/skin/build_skin.h"
 
@@ -27,16 +28,6 @@ inline constexpr double kInwardInThicknesses = 2.0;
 inline constexpr double kMostAdded = 0.2;
 // Shorter edges are not divided.
 inline constexpr double kShortestDividedInThicknesses = 2.0;
-
-// Furthest that the segment a-b stands outside of M1 (towards M) and below it, mm, each >= 0.
-struct ChordDeviation {
-  double outward_mm = 0.0;
-  double inward_mm = 0.0;
-};
-ChordDeviation chord_deviation(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Skin& skin);
-
-// A point of M1 near to p, by Newton steps in the distance field; p itself on the medial axis.
-Eigen::Vector3d onto_m1(const Eigen::Vector3d& p, const Skin& skin);
 
 struct SkinFollowing {
   int nodes_added = 0;

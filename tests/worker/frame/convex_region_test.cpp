@@ -5,18 +5,14 @@
 
 #include <random>
 
+#include "tests/worker/fixture/skin_of.h"
 #include "tests/worker/skin/bodies.h"
 #include "worker/frame/sample_frame.h"
 
 namespace skinframe {
 namespace {
 
-Skin skin_of(const TriangleMesh& body) {
-  RunContext context;
-  auto skin = build_skin(body, {.thickness_mm = 1.0}, context);
-  EXPECT_TRUE(skin.ok()) << skin.error().message;
-  return std::move(skin.value());
-}
+using test::skin_of;
 
 bool holds(const std::vector<HalfSpace>& region, const Eigen::Vector3d& p, double tolerance) {
   for (const HalfSpace& h : region) {

@@ -3,18 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/worker/fixture/skin_of.h"
 #include "tests/worker/skin/bodies.h"
 #include "worker/skin/mend_edges.h"
 
 namespace skinframe {
 namespace {
 
-Skin skin_of(const TriangleMesh& body) {
-  RunContext context;
-  auto skin = build_skin(body, {.thickness_mm = 1.0}, context);
-  EXPECT_TRUE(skin.ok()) << skin.error().message;
-  return std::move(skin.value());
-}
+using test::skin_of;
 
 // M1 of a body of revolution or a sphere, as a mesh of few triangles inscribed in it.
 TriangleMesh shrunk_sphere(double radius, int levels) {

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "tests/worker/fixture/skin_of.h"
 #include "tests/worker/skin/bodies.h"
 #include "worker/frame/convex_region.h"
 #include "worker/skin/mend_edges.h"
@@ -14,12 +15,7 @@
 namespace skinframe {
 namespace {
 
-Skin skin_of(const TriangleMesh& body) {
-  RunContext context;
-  auto skin = build_skin(body, {.thickness_mm = 1.0}, context);
-  EXPECT_TRUE(skin.ok()) << skin.error().message;
-  return std::move(skin.value());
-}
+using test::skin_of;
 
 FrameOptions options_for_pa() {
   FrameOptions options;

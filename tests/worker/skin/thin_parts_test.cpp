@@ -3,18 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/worker/fixture/skin_of.h"
 #include "tests/worker/skin/bodies.h"
 #include "worker/skin/build_skin.h"
 
 namespace skinframe {
 namespace {
 
-Skin skin_of(const TriangleMesh& body) {
-  RunContext context;
-  auto skin = build_skin(body, {.thickness_mm = 1.0}, context);
-  EXPECT_TRUE(skin.ok()) << skin.error().message;
-  return std::move(skin.value());
-}
+using test::skin_of;
 
 // A block of 19.2 x 20 x 40 mm with a fin of `cells` x 1.2 mm and 20 mm height on it, as long as the block.
 TriangleMesh block_with_fin(int cells) {
