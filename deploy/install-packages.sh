@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs the Debian 12 packages that are missing: those to build and run, and with "tests" those that only
-# the tests need. Silent and quick when all are there.
+# Installs the Debian 12 packages that are missing: those to build and run; with "tests" those that only the tests
+# need too, with "package" those that pack, with "containers" those that run containers. Silent and quick when all are there.
 set -euo pipefail
 
 build=(g++ cmake ninja-build pkg-config libeigen3-dev libcgal-dev libceres-dev libgrpc++-dev libprotobuf-dev
@@ -10,10 +10,19 @@ build=(g++ cmake ninja-build pkg-config libeigen3-dev libcgal-dev libceres-dev l
        libboost-iostreams-dev libblosc-dev zlib1g-dev libsqlite3-dev libpqxx-dev libssl-dev
        libminizip-dev libexpat1-dev)
 tests=(libgtest-dev libgmock-dev prusa-slicer openssl coinor-libipopt-dev
-       spin postgresql-15 util-linux)
+       spin postgresql-15 util-linux ccache python3-pip python3-setuptools python3-wheel python3-grpcio
+       python3-protobuf)
+
+package=(ccache dpkg-dev file)
+containers=(podman runc golang-github-containernetworking-plugin-dnsname debootstrap debian-archive-keyring iptables
+            podman-compose openssl python3-grpcio)
 
 wanted=("${build[@]}")
-[ "${1:-}" = tests ] && wanted+=("${tests[@]}")
+case "${1:-}" in
+  tests) wanted+=("${tests[@]}") ;;
+  package) wanted+=("${package[@]}") ;;
+  containers) wanted=("${containers[@]}") ;;
+esac
 
 missing=()
 for package in "${wanted[@]}"; do
