@@ -11,7 +11,7 @@ build=(g++ cmake ninja-build pkg-config libeigen3-dev libcgal-dev libceres-dev l
        libminizip-dev libexpat1-dev)
 tests=(libgtest-dev libgmock-dev prusa-slicer openssl coinor-libipopt-dev
        spin postgresql-15 util-linux ccache python3-pip python3-setuptools python3-wheel python3-grpcio
-       python3-protobuf)
+       python3-protobuf systemd)
 
 package=(ccache dpkg-dev file)
 containers=(podman runc golang-github-containernetworking-plugin-dnsname debootstrap debian-archive-keyring iptables
