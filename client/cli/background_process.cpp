@@ -14,13 +14,15 @@
 #include <cerrno>
 #include <climits>
 #include <cstring>
+#include <string_view>
 #include <utility>
 
 namespace skinframe::client {
 namespace {
 
 // Between fork and exec: async-signal-safe calls only, since other threads (gRPC's) may hold locks.
-[[noreturn]] void become(char* const* arguments, pid_t parent, int null_in, int log) {
+[[noreturn]] void become(char* const* arguments, char* const* environment, pid_t parent, int null_in,
+                         int log) {
   ::setpgid(0, 0);
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);
@@ -29,11 +31,23 @@ namespace {
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   if (::dup2(null_in, 0) < 0 || ::dup2(log, 1) < 0 || ::dup2(log, 2) < 0) ::_exit(127);
   ::close_range(3, UINT_MAX, CLOSE_RANGE_CLOEXEC);
-  ::execv(arguments[0], arguments);
+  ::execve(arguments[0], arguments, environment);
   constexpr char kWhy[] = "cannot run the program\n";
   const ssize_t ignored = ::write(2, kWhy, sizeof kWhy - 1);
   static_cast<void>(ignored);
   ::_exit(127);
+}
+
+// What configures the farm's servers and workers is not meant for those that are started here.
+std::vector<char*> environment_without_options() {
+  std::vector<char*> kept;
+  for (char** entry = ::environ; *entry != nullptr; ++entry) {
+    const std::string_view words(*entry);
+    if (!words.starts_with("SKINFRAME_SERVER") && !words.starts_with("SKINFRAME_WORKER_"))
+      kept.push_back(*entry);
+  }
+  kept.push_back(nullptr);
+  return kept;
 }
 
 }  // namespace
@@ -49,9 +63,10 @@ Result<BackgroundProcess> BackgroundProcess::start(const std::vector<std::string
   std::vector<char*> arguments;
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
+  const std::vector<char*> environment = environment_without_options();
   const pid_t parent = ::getpid();
   const pid_t pid = ::_Fork();
-  if (pid == 0) become(arguments.data(), parent, null_in, log_fd);
+  if (pid == 0) become(arguments.data(), environment.data(), parent, null_in, log_fd);
   ::close(log_fd);
   ::close(null_in);
   if (pid < 0) return failed("no new process");

@@ -11,20 +11,23 @@
 #include <iterator>
 #include <string_view>
 
+#include "client/cli/completion.h"
+#include "client/cli/doctor.h"
 #include "client/cli/follow.h"
 #include "client/cli/sibling.h"
 #include "client/cli/verbs.h"
+#include "proto/command_line/surroundings.h"
 
 namespace skinframe::client {
 namespace {
 
 constexpr std::array<std::string_view, 4> kLocalVerbs = {"sample", "check", "solve-frame", "calibrate"};
-constexpr std::array<std::string_view, 2> kUnbuiltVerbs = {"render", "doctor"};
+constexpr std::array<std::string_view, 1> kUnbuiltVerbs = {"render"};
 // Verbs of the server with a part that runs here: `printers import FILE`.
 constexpr std::array<std::string_view, 2> kProfileVerbs = {"printers", "materials"};
 
-constexpr std::array<std::string_view, 5> kGlobalOptionsWithValue = {"--server", "--tls-ca", "--tls-cert",
-                                                                     "--tls-key", "--token"};
+constexpr std::array<std::string_view, 6> kGlobalOptionsWithValue = {"--server",  "--tls-ca", "--tls-cert",
+                                                                     "--tls-key", "--token",  "--config"};
 
 template <class List>
 bool contains(const List& list, std::string_view word) {
@@ -73,6 +76,7 @@ class CommandLine {
                     "By which the server knows you; better by the environment")
         ->envname("SKINFRAME_TOKEN");
     app_.add_flag("--json", global_.json, "Data as JSON on stdout");
+    take_from_surroundings(app_, "SKINFRAME_");
     add_run();
     add_submit();
     add_watch();
@@ -95,6 +99,21 @@ class CommandLine {
                  "  skinframe materials show pla\n"
                  "  skinframe materials import spoolman-filament.json > my-petg.json\n",
                  materials);
+    verb("doctor",
+         "Looks at everything between this program and a finished job: server, versions, clocks, disks, "
+         "profiles, workers",
+         "  skinframe doctor\n  skinframe doctor --server farm:7350 --tls-ca ca.pem --json\n"
+         "Each line is ok, a note, or WRONG. Exit codes: 0 nothing is wrong, 7 no server answers, 2 it "
+         "refuses the\n"
+         "caller, 5 something else is wrong.",
+         [this] { return doctor(global_); });
+    verb("completion", "What makes a shell complete this program's words",
+         "  source <(skinframe completion)                                   in this bash, or in ~/.bashrc\n"
+         "  skinframe completion > /etc/bash_completion.d/skinframe          for everybody",
+         [this] {
+           fmt::print("{}", bash_completion(app_));
+           return kExitSuccess;
+         });
     add_local("sample", "Write a body that ships with the program (runs here)",
               "  skinframe sample --list\n  skinframe sample hanging-ball --out ball.stl");
     add_local("check", "Re-check every claim of a result from its files alone (runs here)",

@@ -7,6 +7,7 @@
 #include "client/jobs/request_id.h"
 #include "skinframe/v1/catalog.grpc.pb.h"
 #include "skinframe/v1/job.grpc.pb.h"
+#include "skinframe/v1/server.grpc.pb.h"
 
 namespace skinframe::client {
 namespace {
@@ -80,6 +81,11 @@ Result<std::vector<v1::Job>> list_jobs(const Connection& connection, const ListF
 Result<v1::ListPrintersResponse> list_printers(const Connection& connection) {
   const auto stub = v1::CatalogService::NewStub(connection.channel);
   return unary(connection, *stub, &v1::CatalogService::Stub::ListPrinters, v1::ListPrintersRequest());
+}
+
+Result<v1::ServerInfo> server_info(const Connection& connection) {
+  const auto stub = v1::ServerService::NewStub(connection.channel);
+  return unary(connection, *stub, &v1::ServerService::Stub::GetServerInfo, v1::GetServerInfoRequest());
 }
 
 Result<v1::ListMaterialsResponse> list_materials(const Connection& connection) {

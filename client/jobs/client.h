@@ -10,6 +10,7 @@
 #include "client/call/connect.h"
 #include "skinframe/v1/catalog.pb.h"
 #include "skinframe/v1/job.pb.h"
+#include "skinframe/v1/server.pb.h"
 
 namespace skinframe::client {
 
@@ -29,6 +30,8 @@ struct ListFilter {
 Result<std::vector<v1::Job>> list_jobs(const Connection& connection, const ListFilter& filter);
 
 Result<v1::ListPrintersResponse> list_printers(const Connection& connection);
+// What the server says of itself.
+Result<v1::ServerInfo> server_info(const Connection& connection);
 Result<v1::ListMaterialsResponse> list_materials(const Connection& connection);
 
 }  // namespace skinframe::client

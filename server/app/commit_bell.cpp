@@ -30,6 +30,7 @@ void CommitBell::committed(const JobRecord& record, bool state_changed) {
   hub_.wake(record.job.job_id());
   if (!state_changed) return;
   log_state(record);
+  counts_.state_changed(record.job);
   if (record.job.state() == v1::JOB_STATE_QUEUED) offer();
 }
 

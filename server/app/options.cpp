@@ -7,6 +7,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "proto/command_line/surroundings.h"
 #include "server/app/listen_address.h"
 
 namespace skinframe::server {
@@ -152,6 +153,10 @@ std::variant<ServerOptions, EarlyEnd> parse_command_line(int argc, const char* c
   app.add_option("--check-health", options.check_health,
                  "ask the server at this host:port of this machine how it is: 0 when it serves, 1 otherwise; "
                  "starts none");
+  app.add_option(
+      "--metrics", options.metrics,
+      "serve Prometheus metrics at http://ADDRESS:PORT/metrics, in the clear; PORT alone is 127.0.0.1");
+  take_from_surroundings(app, "SKINFRAME_SERVER_");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

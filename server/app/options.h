@@ -30,6 +30,7 @@ struct ServerOptions {
       client_ca;              // PEM; callers' certificates are verified against it; empty: not asked for
   Milliseconds drain{5'000};  // at the stop, for calls under way; 0 .. 1 h
   std::filesystem::path port_file;  // empty: none
+  std::string metrics;              // address:port of the metrics; empty: none
   std::string check_health;         // address; not empty: ask the server there how it is, and start none
 
   bool store_is_postgres() const;

@@ -13,9 +13,12 @@
 #include <utility>
 #include <vector>
 
+#include "proto/metrics/metrics_listener.h"
+#include "proto/metrics/process_metrics.h"
 #include "server/api/artifact_service.h"
 #include "server/api/catalog_service.h"
 #include "server/api/job_service.h"
+#include "server/api/server_service.h"
 #include "server/api/worker_service.h"
 #include "server/app/commit_bell.h"
 #include "server/app/data_folder.h"
@@ -25,6 +28,9 @@
 #include "server/leases/deadline_watch.h"
 #include "server/leases/duty_runner.h"
 #include "server/leases/lease_reaper.h"
+#include "server/metrics/job_counts.h"
+#include "server/metrics/queue_figures.h"
+#include "server/metrics/rpc_times.h"
 #include "server/replicas/progress_follower.h"
 #include "server/retention/artifact_cleaner.h"
 #include "server/retention/checkpoint_cleaner.h"
@@ -51,7 +57,8 @@ constexpr Milliseconds kReloadEvery{1'000};  // a look at the profiles and the t
 constexpr int kDatabaseSessions = 16;
 constexpr int kLargestMessageBytes = 4 << 20;
 constexpr const char* kServices[] = {"skinframe.v1.JobService", "skinframe.v1.ArtifactService",
-                                     "skinframe.v1.CatalogService", "skinframe.v1.WorkerService"};
+                                     "skinframe.v1.CatalogService", "skinframe.v1.WorkerService",
+                                     "skinframe.v1.ServerService"};
 
 // 2000 watches on one channel have room beside the calls of a farm's software.
 constexpr int kMostStreamsOfAConnection = 4'096;
@@ -108,8 +115,10 @@ struct Server::Rooms {
   AttemptPolicy policy;
   Milliseconds drain;
   LiveCatalog catalog;
+  std::shared_ptr<prometheus::Registry> registry = std::make_shared<prometheus::Registry>();
+  JobCounts counts{*registry};
   WatchHub hub{kMostWatchers};
-  CommitBell bell{hub};
+  CommitBell bell{hub, counts};
   std::unique_ptr<TenantArtifacts> artifacts;
   std::unique_ptr<JobStore> store;
   EventPages pages{hub, [this](const std::string& job_id, std::int64_t after_sequence, int limit) {
@@ -131,11 +140,14 @@ struct Server::Rooms {
   std::optional<ArtifactService> files;
   std::optional<CatalogService> profiles;
   std::optional<WorkerService> workers;
+  std::optional<ServerService> info;
   std::unique_ptr<grpc::Server> grpc_server;
   std::string address;
+  std::unique_ptr<metrics::MetricsListener> metrics_listener;  // where the operator wants them
 
   absl::Status open(const ServerOptions& options, const Clock& clock, IdGenerator& ids);
   absl::Status listen(const ServerOptions& options);
+  absl::Status show_metrics(const ServerOptions& options, const Clock& clock);
 };
 
 absl::Status Server::Rooms::open(const ServerOptions& options, const Clock& clock, IdGenerator& ids) {
@@ -160,6 +172,7 @@ absl::Status Server::Rooms::open(const ServerOptions& options, const Clock& cloc
   files.emplace(parts);
   profiles.emplace(catalog);
   workers.emplace(parts);
+  info.emplace(parts, options.store_is_postgres() ? "postgresql" : "sqlite");
   std::vector<Duty*> all{&*reaper, &*deadlines, &*desk};
   if (options.store_is_postgres()) all.push_back(&follower.emplace(*store, hub, kFollowEvery));
   if (options.keep_jobs_days > 0)
@@ -188,6 +201,12 @@ absl::Status Server::Rooms::listen(const ServerOptions& options) {
   builder.RegisterService(&*files);
   builder.RegisterService(&*profiles);
   builder.RegisterService(&*workers);
+  builder.RegisterService(&*info);
+  if (!options.metrics.empty()) {
+    std::vector<std::unique_ptr<grpc::experimental::ServerInterceptorFactoryInterface>> interceptors;
+    interceptors.push_back(std::make_unique<RpcTimes>(*registry));
+    builder.experimental().SetInterceptorCreators(std::move(interceptors));
+  }
   grpc_server = builder.BuildAndStart();
   if (grpc_server == nullptr || port == 0) {
     grpc_server.reset();
@@ -197,6 +216,20 @@ absl::Status Server::Rooms::listen(const ServerOptions& options) {
   }
   for (const char* service : kServices) grpc_server->GetHealthCheckService()->SetServingStatus(service, true);
   address = with_port(options.listen, port);
+  return absl::OkStatus();
+}
+
+absl::Status Server::Rooms::show_metrics(const ServerOptions& options, const Clock& clock) {
+  if (options.metrics.empty()) return absl::OkStatus();
+  try {
+    metrics_listener = std::make_unique<metrics::MetricsListener>(
+        options.metrics,
+        metrics::Sources{registry, std::make_shared<QueueFigures>(*store, hub, *desk, *reaper, clock),
+                         std::make_shared<metrics::ProcessMetrics>("server")});
+  } catch (const std::runtime_error& error) {
+    return absl::UnavailableError(fmt::format("--metrics: {}", error.what()));
+  }
+  spdlog::info("metrics at http://{}/metrics", metrics_listener->address());
   return absl::OkStatus();
 }
 
@@ -213,6 +246,7 @@ absl::StatusOr<std::unique_ptr<Server>> Server::start(const ServerOptions& optio
       std::make_unique<Rooms>(*std::move(folder), *std::move(tenants), options, *std::move(known))));
   if (auto status = server->rooms_->open(options, clock, ids); !status.ok()) return status;
   if (auto status = server->rooms_->listen(options); !status.ok()) return status;
+  if (auto status = server->rooms_->show_metrics(options, clock); !status.ok()) return status;
   if (!options.port_file.empty()) {
     auto status = write_file_at_once(options.port_file, server->address() + "\n");
     if (!status.ok()) return status;
@@ -242,6 +276,7 @@ void Server::stop() {
     rooms_->grpc_server.reset();
   }
   rooms_->executor.stop();
+  rooms_->metrics_listener.reset();
 }
 
 }  // namespace skinframe::server

@@ -68,6 +68,9 @@ class ArtifactStore {
   // added. So uploads by other servers on the folder, and removals, are seen a minute late.
   absl::StatusOr<std::int64_t> bytes_used();
 
+  // Room on the disk for whoever runs the server.
+  absl::StatusOr<std::int64_t> bytes_free() const;
+
   const ArtifactLimits& limits() const { return limits_; }
 
  private:

@@ -37,4 +37,11 @@ void ArtifactStore::count_upload(std::int64_t size_bytes) {
   bytes_used_ += size_bytes;
 }
 
+absl::StatusOr<std::int64_t> ArtifactStore::bytes_free() const {
+  std::error_code error;
+  const auto space = std::filesystem::space(folder_, error);
+  if (error) return errno_status(error.value(), folder_, "look at the room of");
+  return static_cast<std::int64_t>(space.available);
+}
+
 }  // namespace skinframe::server

@@ -3,6 +3,8 @@
 // hold up the others.
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <set>
 #include <string>
 #include <string_view>
@@ -21,8 +23,11 @@ class JobSweep {
   // not the job's: they end the sweep and are returned.
   absl::Status run(JobStore& store, const std::vector<std::string>& job_ids, const Decide& decide);
 
+  std::uint64_t changes() const { return changes_; }  // made since the start; from any thread
+
  private:
   const std::string_view duty_;
+  std::atomic<std::uint64_t> changes_ = 0;
   std::set<std::string> failed_;  // in the sweep before
 };
 

@@ -48,6 +48,11 @@ void LeaseDesk::withdraw(Ticket ticket) {
   gone->answer(absl::CancelledError("the worker hung up"));
 }
 
+std::size_t LeaseDesk::waiting() {
+  const std::lock_guard lock(mutex_);
+  return waiters_.size();
+}
+
 void LeaseDesk::job_queued() {
   const std::lock_guard lock(mutex_);
   // While one is being served the list may be empty, and that one may have looked too early for this job.

@@ -18,6 +18,8 @@ class LeaseReaper final : public Duty {
   std::string_view name() const override { return "lease reaper"; }
   absl::Status run_once(Time now) override;
 
+  std::uint64_t expiries() const { return sweep_.changes(); }  // leases that it has ended; from any thread
+
  private:
   JobStore& store_;
   const AttemptPolicy policy_;

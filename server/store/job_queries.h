@@ -276,26 +276,4 @@ absl::Status write_decision(Database& database, const JobRow& row, JobRecord& af
   return write_change(database, row.ordinal, after, std::move(events));
 }
 
-template <class Database>
-absl::StatusOr<std::vector<DroppedCheckpoint>> read_dropped(Database& database, int limit) {
-  typename Database::Statement select(
-      database, "SELECT tenant, sha256 FROM dropped_checkpoints ORDER BY tenant, sha256 LIMIT ?");
-  std::vector<DroppedCheckpoint> dropped;
-  select.bind(limit);
-  while (select.step()) dropped.push_back({select.bytes(0), select.bytes(1)});
-  if (!select.status().ok()) return select.status();
-  return dropped;
-}
-
-template <class Database>
-absl::Status forget_dropped_rows(Database& database, const std::vector<DroppedCheckpoint>& seen_to) {
-  for (const DroppedCheckpoint& row : seen_to) {
-    typename Database::Statement erase(database,
-                                       "DELETE FROM dropped_checkpoints WHERE tenant = ? AND sha256 = ?");
-    absl::Status status = erase.bind_text(row.tenant).bind_text(row.sha256).run();
-    if (!status.ok()) return status;
-  }
-  return absl::OkStatus();
-}
-
 }  // namespace skinframe::server

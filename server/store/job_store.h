@@ -69,6 +69,14 @@ struct TenantLoad {
   std::int64_t running = 0;
 };
 
+// What a tenant has that has not ended.
+struct TenantFigures {
+  std::string tenant;
+  std::int64_t queued = 0;
+  std::int64_t running = 0;
+  std::optional<Time> oldest_queued;  // when the queued job that was submitted first was submitted
+};
+
 struct ListQuery {
   std::optional<std::string> tenant;          // none: of all
   std::vector<v1::JobState> states;           // empty: all
@@ -156,6 +164,10 @@ class JobStore {
   // dropped.
   virtual absl::StatusOr<std::vector<DroppedCheckpoint>> dropped_checkpoints(int limit) = 0;
   virtual absl::Status forget_dropped(const std::vector<DroppedCheckpoint>& seen_to) = 0;
+
+  // Of each tenant that has jobs queued or running, by name. Costs a walk over the index of those jobs: for a
+  // look now and then, not for each call.
+  virtual absl::StatusOr<std::vector<TenantFigures>> tenant_figures() = 0;
 
   // The sequence number of the newest event of each of these jobs; unknown ones are left out.
   virtual absl::StatusOr<std::map<std::string, std::int64_t>> last_sequences(

@@ -11,6 +11,7 @@
 
 #include "server/store/job_queries.h"
 #include "server/store/job_store.h"
+#include "server/store/operating_queries.h"
 
 namespace skinframe::server {
 
@@ -52,6 +53,10 @@ class SqlReads : public JobStore {
   }
   absl::StatusOr<std::vector<std::string>> ended_jobs(Time until, int limit) final {
     return overdue(kEndedJobs, until, limit);
+  }
+
+  absl::StatusOr<std::vector<TenantFigures>> tenant_figures() final {
+    return source().with([](Database& database) { return read_tenant_figures(database); });
   }
 
   absl::StatusOr<std::vector<DroppedCheckpoint>> dropped_checkpoints(int limit) final {

@@ -9,7 +9,9 @@ cmake --install "$1" --prefix "$prefix" >/dev/null
 for program in skinframe skinframe-server skinframe-worker; do
   "$prefix/bin/$program" --version
   test -s "$prefix/share/doc/$program/copyright"
+  grep -q '^.SH DESCRIPTION' "$prefix/share/man/man1/$program.1"
 done
+bash -n "$prefix/share/bash-completion/completions/skinframe"
 for unit in skinframe-server skinframe-worker; do
   file=$prefix/lib/systemd/system/$unit.service
   # systemd looks for a program without a folder where systems have them; here it is elsewhere.

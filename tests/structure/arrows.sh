@@ -20,7 +20,8 @@ forbid() {
 forbid client '(worker|server)/' "the client knows proto/ only"
 forbid server '(worker|client)/' "the server knows proto/ only"
 forbid worker '(server|client)/' "the worker knows proto/ only"
-for room in run profile mesh solid skin stress frame mechanics optimize support problem export report sample pipeline check job; do
+forbid proto "(server|worker|client)/" "proto knows nobody"
+for room in run profile mesh solid skin stress frame mechanics optimize support problem export report sample pipeline check job metrics; do
   forbid "worker/$room" '(skinframe/v1|grpc|google/protobuf)' "only the agent sees gRPC and protobuf"
 done
 stages=(profile mesh solid skin stress frame mechanics optimize support problem export report pipeline)

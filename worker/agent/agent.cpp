@@ -14,11 +14,14 @@
 #include <fstream>
 #include <random>
 #include <sstream>
+#include <stdexcept>
 #include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
+#include "proto/metrics/metrics_listener.h"
+#include "proto/metrics/process_metrics.h"
 #include "worker/agent/backoff.h"
 #include "worker/agent/child_process.h"
 #include "worker/agent/job_runner.h"
@@ -82,6 +85,22 @@ Result<std::filesystem::path> work_root(const AgentOptions& options) {
       fmt::format("no temporary folder: {}; set TMPDIR to a folder that can be written, or give "
                   "--work-dir",
                   error.message()));
+}
+
+// Null: nobody asked for them.
+Result<std::unique_ptr<metrics::MetricsListener>> show_metrics(const AgentOptions& options) {
+  std::unique_ptr<metrics::MetricsListener> listener;
+  if (options.metrics_address.empty()) return listener;
+  options.metrics->set_slots(options.slots);
+  try {
+    listener = std::make_unique<metrics::MetricsListener>(
+        options.metrics_address,
+        metrics::Sources{options.metrics->registry(), std::make_shared<metrics::ProcessMetrics>("worker")});
+  } catch (const std::runtime_error& error) {
+    return io_error(fmt::format("--metrics: {}", error.what()));
+  }
+  spdlog::info("metrics at http://{}/metrics", listener->address());
+  return listener;
 }
 
 // One job at a time: ask, run, ask again.
@@ -194,7 +213,10 @@ int run_agent(const AgentOptions& options) {
   Status status = options.validate();
   if (status) {
     const auto channel = open_channel(options);
-    if (channel) {
+    const auto listener = show_metrics(options);
+    if (!listener) {
+      status = listener.error();
+    } else if (channel) {
       std::stop_source stop;
       std::stop_source drain;
       std::atomic<bool> done = false;

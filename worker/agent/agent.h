@@ -17,6 +17,7 @@
 #include <stop_token>
 #include <string>
 
+#include "worker/metrics/worker_metrics.h"
 #include "worker/run/result.h"
 
 namespace grpc {
@@ -39,6 +40,9 @@ struct AgentOptions {
   int threads_per_job = 1;  // 1 .. 256
   std::string worker_name;  // for people, at most 96 bytes; empty: host name and process id
   std::filesystem::path self_executable = "/proc/self/exe";  // run as: self_executable run-job WORKDIR
+  std::string
+      metrics_address;  // PORT or IP:PORT of the Prometheus metrics (proto/metrics); empty: not served
+  std::shared_ptr<WorkerMetrics> metrics = std::make_shared<WorkerMetrics>();  // what is counted meanwhile
 
   Status validate() const;
 };

@@ -30,8 +30,9 @@ milliseconds asked_interval(const v1::Assignment& assignment) {
 }  // namespace
 
 Heartbeater::Heartbeater(v1::WorkerService::StubInterface& stub, const v1::Assignment& assignment,
-                         std::stop_token worker_stop)
+                         std::stop_token worker_stop, WorkerMetrics& metrics)
     : stub_(stub),
+      metrics_(metrics),
       job_id_(assignment.job_id()),
       fencing_token_(assignment.fencing_token()),
       period_(std::min(asked_interval(assignment), kHeartbeatPeriod)),
@@ -105,6 +106,7 @@ void Heartbeater::beat() {
   const grpc::Status status = stub_.Heartbeat(&context, request, &response);
   switch (status.error_code()) {
     case grpc::StatusCode::OK:
+      metrics_.heartbeat("ok");
       if (!server_answers_) spdlog::info("job={} heartbeats arrive again", job_id_);
       server_answers_ = true;
       prolong(response.lease_left(), asked);
@@ -112,15 +114,18 @@ void Heartbeater::beat() {
       return;
     case grpc::StatusCode::ABORTED:
     case grpc::StatusCode::NOT_FOUND:
+      metrics_.heartbeat("lease_lost");
       spdlog::warn("job={} the lease is lost: {}", job_id_, status.error_message());
       stop_job(StopCause::kLeaseLost);
       return;
     case grpc::StatusCode::INVALID_ARGUMENT:  // it would be refused again: better lose a tick than the lease
+      metrics_.heartbeat("refused");
       spdlog::warn("job={} the server refused progress: {}", job_id_, status.error_message());
       return;
     default:
       break;
   }
+  metrics_.heartbeat("failed");
   if (server_answers_) spdlog::warn("job={} heartbeat failed: {}", job_id_, status.error_message());
   server_answers_ = false;
   bool expired = false;

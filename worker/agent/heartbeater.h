@@ -16,6 +16,7 @@
 #include "skinframe/v1/worker.grpc.pb.h"
 #include "worker/agent/conclusion.h"
 #include "worker/agent/progress_batch.h"
+#include "worker/metrics/worker_metrics.h"
 
 namespace skinframe::agent {
 
@@ -27,7 +28,7 @@ class Heartbeater {
  public:
   // `worker_stop` is the agent's own end; it stops the job with StopCause::kWorkerStopped.
   Heartbeater(v1::WorkerService::StubInterface& stub, const v1::Assignment& assignment,
-              std::stop_token worker_stop);
+              std::stop_token worker_stop, WorkerMetrics& metrics);
   ~Heartbeater();
   Heartbeater(const Heartbeater&) = delete;
   Heartbeater& operator=(const Heartbeater&) = delete;
@@ -53,6 +54,7 @@ class Heartbeater {
   void prolong(const google::protobuf::Duration& left, std::chrono::steady_clock::time_point from);
 
   v1::WorkerService::StubInterface& stub_;
+  WorkerMetrics& metrics_;
   const std::string job_id_;
   const std::int64_t fencing_token_;
   const std::chrono::milliseconds period_;

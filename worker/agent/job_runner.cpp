@@ -20,6 +20,7 @@
 #include "worker/agent/heartbeater.h"
 #include "worker/agent/supervise.h"
 #include "worker/agent/work_folder.h"
+#include "worker/metrics/stage_times.h"
 
 namespace skinframe::agent {
 namespace {
@@ -42,6 +43,13 @@ Conclusion give_up(v1::Reason reason, std::string detail, bool retryable) {
   return out;
 }
 
+// "SUCCEEDED" of JOB_STATE_SUCCEEDED, "NONE" of REASON_UNSPECIFIED.
+std::string word_of(const std::string& name) {
+  for (const std::string_view prefix : {"JOB_STATE_", "REASON_"})
+    if (name.starts_with(prefix)) return name.ends_with("UNSPECIFIED") ? "NONE" : name.substr(prefix.size());
+  return name;
+}
+
 class Attempt {
  public:
   Attempt(const AgentOptions& options, const fs::path& agent_folder, ServerStubs stubs,
@@ -51,13 +59,18 @@ class Attempt {
         stubs_(stubs),
         assignment_(assignment),
         worker_stop_(worker_stop),
-        heartbeater_(stubs.worker, assignment, std::move(worker_stop)) {}
+        heartbeater_(stubs.worker, assignment, std::move(worker_stop), *options.metrics) {}
 
   void run() {
     v1::CompleteRequest completion;
+    options_.metrics->attempt_began();
     const Conclusion end = work(completion);
+    stages_.end(steady_clock::now());
     heartbeater_.finish();
-    if (!end.report || heartbeater_.cause() == StopCause::kLeaseLost) {
+    const bool dropped = !end.report || heartbeater_.cause() == StopCause::kLeaseLost;
+    options_.metrics->attempt_ended(dropped ? "DROPPED" : word_of(v1::JobState_Name(end.outcome.state)),
+                                    dropped ? "DROPPED" : word_of(v1::Reason_Name(end.outcome.reason)));
+    if (dropped) {
       spdlog::warn("job={} dropped: the lease is not ours any more", id());
       return;
     }
@@ -218,6 +231,7 @@ class Attempt {
       spdlog::warn("job={} event line dropped: {}", id(), event.error().message);
     } else if (auto* progress = std::get_if<v1::JobProgress>(&event.value())) {
       progress->set_attempt(assignment_.attempt());
+      stages_.tell(progress->printer_id(), progress->stage(), progress->iteration(), steady_clock::now());
       heartbeater_.add(std::move(*progress));
     } else if (auto* ready = std::get_if<CheckpointReady>(&event.value())) {
       checkpoints.ready(std::move(ready->stage));
@@ -303,6 +317,7 @@ class Attempt {
   const v1::Assignment& assignment_;
   const std::stop_token worker_stop_;
   Heartbeater heartbeater_;
+  StageTimes stages_{*options_.metrics};
 };
 
 }  // namespace

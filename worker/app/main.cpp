@@ -8,6 +8,7 @@
 #include <iostream>
 #include <optional>
 
+#include "proto/command_line/surroundings.h"
 #include "worker/agent/agent.h"
 #include "worker/app/local_verbs.h"
 #include "worker/app/profile_verbs.h"
@@ -33,7 +34,9 @@ int main(int argc, char** argv) {
   AgentOptions agent;
   std::string work_root, tls_ca, tls_cert, tls_key;
   std::optional<double> drain_seconds;
-  app.add_option("--server", agent.server_address, "Server to work for, HOST:PORT")->capture_default_str();
+  app.add_option("--server", agent.server_address, "Server to work for, HOST:PORT")
+      ->envname("SKINFRAME_SERVER")
+      ->capture_default_str();
   app.add_option("--slots", agent.slots, "Jobs at a time")->check(CLI::Range(1, 64))->capture_default_str();
   app.add_option("--work-dir", work_root,
                  "Folder for the files of running jobs (default: a folder under TMPDIR)");
@@ -51,11 +54,16 @@ int main(int argc, char** argv) {
   app.add_option("--threads", agent.threads_per_job, "Threads of one job")
       ->check(CLI::Range(1, 256))
       ->capture_default_str();
+  app.add_option(
+      "--metrics", agent.metrics_address,
+      "Serve Prometheus metrics at http://ADDRESS:PORT/metrics, in the clear; PORT alone is 127.0.0.1");
   app.add_option("--name", agent.worker_name, "Name shown to people (default: host and process)");
 
   bool check_health = false;
   app.add_flag("--check-health", check_health,
                "Say whether a worker with this --work-dir is connected to its server: 0 or 1; starts none");
+
+  take_from_surroundings(app, "SKINFRAME_WORKER_");
 
   std::string job_dir;
   CLI::App* job = app.add_subcommand("run-job", "One job in this process; the agent calls it");

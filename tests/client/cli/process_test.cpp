@@ -58,14 +58,49 @@ TEST_F(Program, AloneItTeachesAndSaysWrongUsage) {
 }
 
 TEST_F(Program, EveryVerbTeachesWithAnExample) {
-  for (const char* verb : {"run", "submit", "watch", "get", "list", "cancel", "download", "printers",
-                           "materials", "delete", "sample", "check", "solve-frame", "calibrate"}) {
+  for (const char* verb :
+       {"run", "submit", "watch", "get", "list", "cancel", "download", "printers", "materials", "delete",
+        "sample", "check", "solve-frame", "calibrate", "doctor", "completion"}) {
     const Ran ran = run(std::string(verb) + " --help");
     EXPECT_EQ(ran.code, 0) << verb;
     EXPECT_THAT(ran.out, HasSubstr(std::string("  skinframe ") + verb)) << verb;
   }
   EXPECT_EQ(run("--version").code, 0);
   EXPECT_THAT(run("--help").out, Not(HasSubstr("render")));
+}
+
+TEST_F(Program, BashCompletesVerbsOptionsAndNothingThatIsNone) {
+  folder_.write("try.sh", run("completion").out + R"(
+complete_words() {
+  COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); COMPREPLY=()
+  _skinframe; echo "${COMPREPLY[*]}"
+}
+complete_words skinframe ca
+complete_words skinframe --server farm:1 --json sub
+complete_words skinframe submit m.stl --warm
+complete_words skinframe printers s
+complete_words skinframe submit mesh
+)");
+  const Ran ran = run("try.sh", "bash");
+  EXPECT_EQ(ran.code, 0) << ran.err;
+  EXPECT_EQ(ran.out, "cancel calibrate\nsubmit\n--warm-start\nshow\n\n") << ran.err;
+}
+
+TEST_F(Program, TheServersAddressIsTakenFromCommandLineFileOrEnvironment) {
+  const std::string file = folder_.write("client.conf", "server = 127.0.0.1:2\n");
+  environment_ = "SKINFRAME_SERVER=127.0.0.1:3";
+  EXPECT_THAT(run("list").err, HasSubstr("127.0.0.1:3"));
+  EXPECT_THAT(run("--config " + file + " list").err, HasSubstr("127.0.0.1:2"));
+  EXPECT_THAT(run("--config " + file + " --server 127.0.0.1:1 list").err, HasSubstr("127.0.0.1:1"));
+  folder_.write("client.conf", "sever = x\n");
+  EXPECT_EQ(run("--config " + file + " list").code, 2);
+}
+
+TEST_F(Program, DoctorSaysWhereNoServerIsAndEndsWithItsCode) {
+  const Ran ran = run("doctor --server 127.0.0.1:1");
+  EXPECT_EQ(ran.code, 7);
+  EXPECT_THAT(ran.out, HasSubstr("WRONG server"));
+  EXPECT_THAT(run("doctor --json --server 127.0.0.1:1").out, HasSubstr("\"well\": false"));
 }
 
 TEST_F(Program, WrongUsageIsTwoAndNamesTheWord) {

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <vector>
 
 #include "server/app/listen_address.h"
+#include "tests/fixture/temporary_folder.h"
 
 namespace skinframe::server {
 namespace {
@@ -32,6 +34,34 @@ TEST(Options, DefaultsListenOnLoopback) {
   const auto& options = std::get<ServerOptions>(parsed);
   EXPECT_EQ(options.listen, "127.0.0.1:7350");
   EXPECT_TRUE(options.validate().ok());
+}
+
+TEST(Options, AreTakenFromTheCommandLineThenTheFileThenTheEnvironment) {
+  const test::TemporaryFolder folder;
+  folder.write("server.conf", "# ours\nlease = 30\nqueue-limit = 7\nallow-plaintext = true\n");
+  const std::string file = (folder.path() / "server.conf").string();
+  ::setenv("SKINFRAME_SERVER_QUEUE_LIMIT", "8", 1);
+  ::setenv("SKINFRAME_SERVER_KEEP_JOBS_DAYS", "9", 1);
+  const auto parsed = parse({"--data", "d", "--config", file.c_str(), "--lease", "40"});
+  ::unsetenv("SKINFRAME_SERVER_QUEUE_LIMIT");
+  ::unsetenv("SKINFRAME_SERVER_KEEP_JOBS_DAYS");
+  ASSERT_TRUE(std::holds_alternative<ServerOptions>(parsed)) << std::get<EarlyEnd>(parsed).text;
+  const auto& options = std::get<ServerOptions>(parsed);
+  EXPECT_EQ(options.policy.lease, Milliseconds(40'000));
+  EXPECT_EQ(options.queue_limit, 7);
+  EXPECT_TRUE(options.allow_plaintext);
+  EXPECT_EQ(options.keep_jobs_days, 9);
+}
+
+TEST(Options, AFileWithALineThatNamesNoOptionOrThatIsNotThereIsWrongUsage) {
+  const test::TemporaryFolder folder;
+  folder.write("server.conf", "leese = 30\n");
+  const std::string file = (folder.path() / "server.conf").string();
+  for (const std::string& name : {file, file + ".none"}) {
+    const auto parsed = parse({"--data", "d", "--config", name.c_str()});
+    ASSERT_TRUE(std::holds_alternative<EarlyEnd>(parsed)) << name;
+    EXPECT_EQ(std::get<EarlyEnd>(parsed).exit_code, 2);
+  }
 }
 
 TEST(Options, SecondsBecomeMilliseconds) {

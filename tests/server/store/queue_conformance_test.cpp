@@ -222,6 +222,30 @@ TEST_P(JobStoreConformance, AWorkerOfTheSameNameThatRestartsIsAnotherWorker) {
   EXPECT_TRUE(beat("a", second->lease.fencing_token, 1).ok());
 }
 
+TEST_P(JobStoreConformance, TellsWhatEachTenantHasThatHasNotEnded) {
+  EXPECT_TRUE(store_->tenant_figures()->empty());
+  const auto create_of = [&](const std::string& id, const std::string& tenant, Milliseconds after) {
+    Change job = example_job(id, 0, kNoon + after);
+    job.record.job.set_tenant(tenant);
+    ASSERT_TRUE(store_->create(job, kNoLimit).ok());
+  };
+  create_of("a1", "a", Milliseconds(0));
+  create_of("b1", "b", Milliseconds(5));
+  create_of("b2", "b", Milliseconds(7));
+  create_of("c1", "c", Milliseconds(9));
+  ASSERT_EQ(lease()->job.job_id(), "a1");
+  ASSERT_TRUE(cancel("c1").ok());
+  const auto figures = store_->tenant_figures();
+  ASSERT_TRUE(figures.ok()) << figures.status();
+  ASSERT_EQ(figures->size(), 2u) << "c has nothing left";
+  EXPECT_EQ((*figures)[0].tenant, "a");
+  EXPECT_EQ((*figures)[0].queued, 0);
+  EXPECT_EQ((*figures)[0].running, 1);
+  EXPECT_FALSE((*figures)[0].oldest_queued);
+  EXPECT_EQ((*figures)[1].queued, 2);
+  EXPECT_EQ((*figures)[1].oldest_queued, kNoon + Milliseconds(5));
+}
+
 TEST_P(JobStoreConformance, FindsExpiredLeasesAndPassedDeadlinesOldestFirst) {
   for (const char* id : {"b", "a"}) {
     Change job = example_job(id);
