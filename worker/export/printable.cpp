@@ -2,6 +2,7 @@
 #include "worker/export/printable.h"
 
 #include <fmt/format.h>
+#include <malloc.h>
 #include <openvdb/tools/ChangeBackground.h>
 #include <openvdb/tools/Composite.h>
 #include <openvdb/tools/Prune.h>
@@ -97,6 +98,14 @@ openvdb::FloatGrid::Ptr m1_level_set(const TriangleMesh& mesh, const Skin& skin,
   return grid;
 }
 
+// Grids are millions of small pieces, which the allocator keeps for others of their size when they go; what
+// comes next are a few large ones.
+void return_free_memory() {
+#ifdef __GLIBC__
+  malloc_trim(0);
+#endif
+}
+
 // Closed shells too small to matter: pockets of the cavity (counted) and crumbs of solid floating in it.
 void drop_small_shells(TriangleMesh& cavity, double smallest_mm3, PrintableMesh& result) {
   DisjointSets shells(cavity.vertices.size());
@@ -135,9 +144,12 @@ Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Fr
   auto struts = strut_level_set(frame, radii_mm, *voxel, band);
   if (context.cancelled()) return cancelled_error();
   openvdb::tools::csgDifference(*cavity_grid, *struts);
+  struts.reset();
+  return_free_memory();
   steps.done("struts");
   TriangleMesh cavity = iso_surface(*cavity_grid, 0.0);
   cavity_grid.reset();
+  return_free_memory();
   if (context.cancelled()) return cancelled_error();
 
   drop_small_shells(cavity, options.smallest_pocket_mm3, result);
