@@ -9,13 +9,13 @@
 #include <deque>
 #include <fstream>
 #include <map>
-#include <random>
 #include <sstream>
 
 #include "worker/agent/artifact_transfer.h"
 #include "worker/agent/assignment.h"
 #include "worker/agent/backoff.h"
 #include "worker/agent/checkpoint_sender.h"
+#include "worker/agent/completion_call.h"
 #include "worker/agent/conclusion.h"
 #include "worker/agent/heartbeater.h"
 #include "worker/agent/supervise.h"
@@ -30,7 +30,6 @@ using std::chrono::steady_clock;
 
 constexpr std::uintmax_t kMaxOutcomeBytes = 1024 * 1024;
 constexpr std::size_t kLastLogLines = 5;
-constexpr std::chrono::minutes kCompletionPatience{10};  // enough to make room on a full disk
 constexpr std::size_t kLastLogLineBytes = 300;
 
 // The attempt cannot go on; how the job ends by that.
@@ -41,13 +40,6 @@ Conclusion give_up(v1::Reason reason, std::string detail, bool retryable) {
   out.outcome.detail = std::move(detail);
   out.retryable = retryable;
   return out;
-}
-
-// "SUCCEEDED" of JOB_STATE_SUCCEEDED, "NONE" of REASON_UNSPECIFIED.
-std::string word_of(const std::string& name) {
-  for (const std::string_view prefix : {"JOB_STATE_", "REASON_"})
-    if (name.starts_with(prefix)) return name.ends_with("UNSPECIFIED") ? "NONE" : name.substr(prefix.size());
-  return name;
 }
 
 class Attempt {
@@ -82,7 +74,7 @@ class Attempt {
     completion.set_retryable(end.retryable);
     for (const v1::PrinterResult& printer : end.outcome.printers) *completion.add_printers() = printer;
     if (end.outcome.frame) *completion.mutable_frame() = *end.outcome.frame;
-    complete(completion);
+    send_completion(stubs_.worker, completion, assignment_.attempt(), heartbeater_, worker_stop_);
   }
 
  private:
@@ -278,37 +270,6 @@ class Attempt {
       file->set_size_bytes(digest->size_bytes);
     }
     return std::nullopt;
-  }
-
-  // Until the server takes it or refuses it. Meanwhile heartbeats keep the lease, though not for ever and not
-  // past the agent's own end: then the lease's expiry is the bound.
-  void complete(const v1::CompleteRequest& completion) {
-    Backoff backoff(std::chrono::milliseconds(100), std::chrono::milliseconds(1000), std::random_device{}());
-    const auto patience = steady_clock::now() + kCompletionPatience;
-    while (true) {
-      grpc::ClientContext context;
-      context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(5));
-      v1::CompleteResponse response;
-      const grpc::Status status = stubs_.worker.Complete(&context, completion, &response);
-      if (status.ok()) {
-        spdlog::info("job={} attempt {} ended: {} {} {}", id(), assignment_.attempt(),
-                     v1::JobState_Name(completion.state()), v1::Reason_Name(completion.reason()),
-                     completion.detail());
-        return;
-      }
-      const bool again = status.error_code() == grpc::StatusCode::UNAVAILABLE ||
-                         status.error_code() == grpc::StatusCode::DEADLINE_EXCEEDED ||
-                         status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED;  // its disk is full
-      if (again && !worker_stop_.stop_requested() && steady_clock::now() < patience) {
-        heartbeater_.prolong_lease();
-      }
-      const auto delay = backoff.next();
-      if (!again || steady_clock::now() + delay >= heartbeater_.lease_expiry()) {
-        spdlog::warn("job={} the completion was not accepted: {}", id(), status.error_message());
-        return;
-      }
-      wait_unless_stopped(std::stop_token(), delay);  // bounded by the lease, not by the agent's end
-    }
   }
 
   const AgentOptions& options_;
