@@ -112,6 +112,7 @@ def connect(address: str = "127.0.0.1:7350", *, tls_ca: Path | None = None, tls_
         ("grpc.http2.max_pings_without_data", 0),  # a watcher only listens
         # A server that restarts is found again soon.
         ("grpc.initial_reconnect_backoff_ms", 100), ("grpc.max_reconnect_backoff_ms", 1_000),
+        ("grpc.dns_min_time_between_resolutions_ms", 1_000),  # a container that restarts has another address
         ("grpc.min_reconnect_backoff_ms", 5_000),  # for one attempt, its TLS handshake included
     ]
     if tls_ca is None:
