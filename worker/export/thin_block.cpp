@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <optional>
 
 #include "worker/export/block_mesh.h"
@@ -66,8 +65,6 @@ class Block {
         mesh_(state, block),
         trial_(state, block, limits, mesh_) {
     stamps_.assign(mesh_.vertices(), 0);
-    became_.resize(mesh_.vertices());
-    std::iota(became_.begin(), became_.end(), 0);
     quadrics_.resize(mesh_.vertices());
     for (int t = 0; t < mesh_.own(); ++t) add_planes(t);
     for (int t = 0; t < mesh_.own(); ++t) {
@@ -86,12 +83,8 @@ class Block {
       std::pop_heap(heap_.begin(), heap_.end());
       const Candidate next = heap_.back();
       heap_.pop_back();
-      const int u = is_now(next.u), v = is_now(next.v);
-      if (u == v) continue;
-      if (next.stamp == stamps_[u] + stamps_[v] && u == next.u && v == next.v)
+      if (next.stamp == stamps_[next.u] + stamps_[next.v] && !mesh_.is_dead(next.u) && !mesh_.is_dead(next.v))
         left -= 2 * try_collapse(next);
-      else if (!limits_.is_bounded)
-        consider(u, v);
     }
     mesh_.write_back();
   }
@@ -144,22 +137,13 @@ class Block {
     if (is_heap_) std::push_heap(heap_.begin(), heap_.end());
   }
 
-  int is_now(int v) const {
-    while (became_[v] != v) v = became_[v];
-    return v;
-  }
-
-  // Where nothing is bounded all edges stay in the heap until they go, and are judged again when their turn
-  // comes: a cost only grows. Where collapses are refused they get another chance as soon as something
-  // changes about them.
+  // All edges about a changed vertex are judged again, those too that were refused before.
   bool try_collapse(const Candidate& edge) {
     const Eigen::Vector3d place = edge.place.cast<double>();
     if (!trial_.holds(edge.u, edge.v, place)) return false;
     trial_.carry_out(edge.u, edge.v, place);
     ++stamps_[edge.u];
-    became_[edge.v] = edge.u;
     quadrics_[edge.u] += quadrics_[edge.v];
-    if (!limits_.is_bounded) return true;
     mesh_.gather(edge.u, around_);
     mesh_.neighbours(edge.u, around_, near_);
     for (int w : near_) consider(edge.u, w);
@@ -172,7 +156,6 @@ class Block {
   BlockMesh mesh_;
   CollapseTrial trial_;
   std::vector<std::uint32_t> stamps_;  // of each vertex: how often it has changed
-  std::vector<int> became_;            // the vertex that took in each; itself while it is there
   std::vector<Quadric> quadrics_;
   std::vector<Candidate> heap_;
   bool is_heap_ = false;
