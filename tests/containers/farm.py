@@ -87,7 +87,7 @@ class Farm:
             "server", "server",
             ["--store=postgresql:///?service=skinframe", "--artifacts=/var/lib/skinframe-server/artifacts",
              f"--tls-cert={SECRETS}/server.crt", f"--tls-key={SECRETS}/server.key", f"--client-ca={SECRETS}/ca.crt",
-             f"--tenants={SECRETS}/tenants.json", f"--lease={LEASE_S}", "--heartbeat=1", "--max-attempts=3"],
+             f"--tenants={SECRETS}/tenants.json", f"--lease={LEASE_S}", "--heartbeat=1", "--max-attempts=2"],
             "--volume", f"{self.name}-server:/var/lib/skinframe-server",
             "--env", f"PGSERVICEFILE={SECRETS}/database-service",
             secrets=("server.crt", "server.key", "ca.crt", "tenants.json", "database-service"))

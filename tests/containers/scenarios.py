@@ -169,7 +169,7 @@ class Memory(Running):
         worker = stage.farm.start_worker("--memory-limit-mb=700", memory_mb=1000)
         Running.workers = [worker]
         for _ in range(ROUNDS):
-            job = stage.farm.wait(stage.farm.submit(*LARGE))
+            job = stage.farm.wait(stage.farm.submit(*LARGE), 900)
             self.assertEqual((job["state"], job["reason"]), ("FAILED", "OUT_OF_MEMORY"), job)
             self.assertIn("memory", job["detail"])
             self.expect_done(stage.farm.submit(*QUICK), attempt=1)
@@ -178,7 +178,7 @@ class Memory(Running):
         worker = stage.farm.start_worker(memory_mb=400)  # and no limit of the worker's own
         Running.workers = [worker]
         for _ in range(ROUNDS):
-            job = stage.farm.wait(stage.farm.submit(*LARGE))
+            job = stage.farm.wait(stage.farm.submit(*LARGE), 900)
             self.assertEqual(job["state"], "FAILED", job)
             self.assertIn("SIGKILL", job["detail"])
             self.expect_done(stage.farm.submit(*QUICK), attempt=1)
