@@ -18,9 +18,11 @@ constexpr std::chrono::hours kStreamDeadline{24 * 30};
 
 enum class Seen { kNothing, kEvents, kFinalState, kEnough };
 
-// The server is away, or has as many watches as it takes.
+// The server is away, or has as many watches as it takes. CANCELLED, where nobody on this side wants to
+// leave: its stop cut the stream.
 bool may_come_back(const grpc::Status& status) {
   return status.error_code() == grpc::StatusCode::UNAVAILABLE ||
+         status.error_code() == grpc::StatusCode::CANCELLED ||
          (status.error_code() == grpc::StatusCode::RESOURCE_EXHAUSTED && asked_delay(status).has_value());
 }
 

@@ -165,8 +165,12 @@ class Farm:
                     continue
                 if after > had or clock() - opened > retries.longest_s:  # it stood until now
                     delays, lost_at = retries.delays(), clock()
-                delay = max(next(delays), asked_delay_s(error) or 0.0)
-                if error.code() != grpc.StatusCode.UNAVAILABLE or clock() + delay > lost_at + retries.patience_s:
+                asked = asked_delay_s(error)
+                delay = max(next(delays), asked or 0.0)
+                # CANCELLED, which nobody here asked for: a stopping server cut the stream.
+                back = error.code() in (grpc.StatusCode.UNAVAILABLE, grpc.StatusCode.CANCELLED)
+                full = error.code() == grpc.StatusCode.RESOURCE_EXHAUSTED and asked is not None
+                if not (back or full) or clock() + delay > lost_at + retries.patience_s:
                     raise errors.from_rpc(error, self.connection.address) from error
                 self.connection.wait(delay)
 

@@ -21,7 +21,8 @@ class FakeJobs final : public v1::JobService::Service {
   v1::Job job;                             // what GetJob answers; NOT_FOUND for another id
   std::vector<v1::JobEvent> events;        // sequence 1, 2, ...
   std::vector<std::int64_t> watched_from;  // after_sequence of each stream
-  std::vector<std::size_t> break_after;    // events before the k-th stream breaks; none: it stays whole
+  grpc::StatusCode break_with = grpc::StatusCode::UNAVAILABLE;
+  std::vector<std::size_t> break_after;  // events before the k-th stream breaks; none: it stays whole
   std::vector<v1::SubmitJobRequest> submissions;  // each attempt
   std::vector<grpc::Status> refusals;             // of the first submissions
   bool name_delay = true;                         // of 1.234 s, with a refusal
@@ -88,7 +89,7 @@ class FakeJobs final : public v1::JobService::Service {
       }
       position = event.sequence();
       if (stream < break_after.size() && sent == break_after[stream]) {
-        return {grpc::StatusCode::UNAVAILABLE, "connection lost"};
+        return {break_with, "connection lost"};
       }
       writer->Write(event);
       ++sent;

@@ -40,6 +40,13 @@ TEST_F(WatchJob, ABrokenStreamIsResumedWithoutGapOrRepetition) {
   EXPECT_THAT(jobs_.watched_from, testing::ElementsAre(0, 3, 3, 3, 5));
 }
 
+TEST_F(WatchJob, AStreamThatAStoppingServerCancelsIsResumedAsWell) {
+  jobs_.break_with = grpc::StatusCode::CANCELLED;
+  jobs_.break_after = {3};
+  ASSERT_TRUE(watch().ok());
+  EXPECT_THAT(seen_, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+}
+
 TEST_F(WatchJob, StartsAfterTheGivenSequenceNumber) {
   WatchOptions options;
   options.after_sequence = 6;
