@@ -9,6 +9,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "worker/export/touching_boxes.h"
 #include "worker/export/triangle_gap.h"
 #include "worker/skin/box_tree.h"
 
@@ -93,7 +94,7 @@ std::vector<std::pair<int, int>> crossing_triangles(const TriangleMesh& mesh, co
     for (int v : mesh.triangles[t]) box.extend(mesh.vertices[v]);
     boxes.push_back(box_around(box));
   }
-  auto found = BoxTree(boxes).pairs([&](int i, int j) { return cross(mesh, among[i], among[j]); });
+  auto found = touching_pairs(boxes, [&](int i, int j) { return cross(mesh, among[i], among[j]); });
   for (auto& [i, j] : found) {
     std::tie(i, j) = std::minmax({among[i], among[j]});
   }

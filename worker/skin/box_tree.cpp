@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/skin/box_tree.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <cmath>
 #include <limits>
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which boxes are near, which overlap: a binary tree of axis-parallel boxes, halved by count at the middle
-// of the longest side. The same tree at any number of threads; reads from many threads at once are safe.
+// Which boxes are near, which a line meets: a binary tree of axis-parallel boxes, halved by count at the
+// middle of the longest side. The same tree at any number of threads; reads from many threads at once are
+// safe.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -17,11 +18,6 @@ Eigen::AlignedBox3f box_around(const Eigen::AlignedBox3d& box);
 class BoxTree {
  public:
   explicit BoxTree(const std::vector<Eigen::AlignedBox3f>& boxes);
-
-  // All pairs (i < j) whose boxes overlap or touch and which keep(i, j) holds, in ascending order. keep is
-  // called from several threads.
-  template <class Keep>
-  std::vector<std::pair<int, int>> pairs(Keep keep) const;
 
   // visit(item) of every item whose box meets what meets(box) does; meets must hold for a box around a box
   // that it holds for.
@@ -43,7 +39,6 @@ class BoxTree {
     std::array<float, 3> at;
     int item;
   };
-  using Pairs = std::vector<std::pair<int, int>>;
 
   static constexpr int kLeaf = 4;         // most items of a leaf
   static constexpr int kParallel = 8192;  // items of a node above which its halves go side by side
@@ -51,17 +46,6 @@ class BoxTree {
   static int nodes_for(int items);
   void build(const std::vector<Eigen::AlignedBox3f>& boxes, std::vector<Centre>& centres, int node, int first,
              int end);
-  template <class Keep>
-  Pairs within(int node, const Keep& keep) const;
-  template <class Keep>
-  Pairs between(int a, int b, const Keep& keep) const;
-  template <class Keep>
-  void add_between(int a, int b, const Keep& keep, Pairs& out) const;
-  template <class Keep>
-  void add_within(int node, const Keep& keep, Pairs& out) const;
-  template <class Keep>
-  void judge(int i, int j, const Keep& keep, Pairs& out) const;
-
   static double squared_distance(const Eigen::AlignedBox3f& box, const Eigen::Vector3d& p) {
     double sum = 0.0;
     for (int k = 0; k < 3; ++k) {

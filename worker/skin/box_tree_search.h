@@ -2,8 +2,6 @@
 // The searches of box_tree.h.
 #pragma once
 
-#include <tbb/parallel_invoke.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -49,83 +47,6 @@ void BoxTree::approach(const Eigen::Vector3d& point, double& least, Visit visit)
     todo[size++] = far;
     todo[size++] = near;
   }
-}
-
-template <class Keep>
-void BoxTree::judge(int i, int j, const Keep& keep, Pairs& out) const {
-  if (!leaf_of_[i].intersects(leaf_of_[j])) return;
-  const std::pair<int, int> pair = std::minmax(order_[i], order_[j]);
-  if (keep(pair.first, pair.second)) out.push_back(pair);
-}
-
-template <class Keep>
-void BoxTree::add_between(int a, int b, const Keep& keep, Pairs& out) const {
-  const Node &x = nodes_[a], &y = nodes_[b];
-  if (!x.box.intersects(y.box)) return;
-  if (x.right < 0 && y.right < 0) {
-    for (int i = x.first; i < x.end; ++i) {
-      if (!leaf_of_[i].intersects(y.box)) continue;
-      for (int j = y.first; j < y.end; ++j) judge(i, j, keep, out);
-    }
-  } else if (y.right < 0 || (x.right >= 0 && x.end - x.first >= y.end - y.first)) {
-    add_between(a + 1, b, keep, out);
-    add_between(x.right, b, keep, out);
-  } else {
-    add_between(a, b + 1, keep, out);
-    add_between(a, y.right, keep, out);
-  }
-}
-
-template <class Keep>
-void BoxTree::add_within(int node, const Keep& keep, Pairs& out) const {
-  const Node& x = nodes_[node];
-  if (x.right < 0) {
-    for (int i = x.first; i < x.end; ++i)
-      for (int j = x.first; j < i; ++j) judge(i, j, keep, out);
-    return;
-  }
-  add_within(node + 1, keep, out);
-  add_within(x.right, keep, out);
-  add_between(node + 1, x.right, keep, out);
-}
-
-template <class Keep>
-BoxTree::Pairs BoxTree::between(int a, int b, const Keep& keep) const {
-  const Node &x = nodes_[a], &y = nodes_[b];
-  Pairs pairs, more;
-  if (!x.box.intersects(y.box)) return pairs;
-  if (std::max(x.end - x.first, y.end - y.first) <= kParallel || (x.right < 0 && y.right < 0)) {
-    add_between(a, b, keep, pairs);
-    return pairs;
-  }
-  const bool halve_x = y.right < 0 || (x.right >= 0 && x.end - x.first >= y.end - y.first);
-  tbb::parallel_invoke([&] { pairs = halve_x ? between(a + 1, b, keep) : between(a, b + 1, keep); },
-                       [&] { more = halve_x ? between(x.right, b, keep) : between(a, y.right, keep); });
-  pairs.insert(pairs.end(), more.begin(), more.end());
-  return pairs;
-}
-
-template <class Keep>
-BoxTree::Pairs BoxTree::within(int node, const Keep& keep) const {
-  const Node& x = nodes_[node];
-  Pairs pairs, more, across;
-  if (x.end - x.first <= kParallel) {
-    add_within(node, keep, pairs);
-    return pairs;
-  }
-  tbb::parallel_invoke([&] { pairs = within(node + 1, keep); }, [&] { more = within(x.right, keep); },
-                       [&] { across = between(node + 1, x.right, keep); });
-  pairs.insert(pairs.end(), more.begin(), more.end());
-  pairs.insert(pairs.end(), across.begin(), across.end());
-  return pairs;
-}
-
-template <class Keep>
-std::vector<std::pair<int, int>> BoxTree::pairs(Keep keep) const {
-  Pairs found;
-  if (!nodes_.empty()) found = within(0, keep);
-  std::sort(found.begin(), found.end());
-  return found;
 }
 
 }  // namespace skinframe

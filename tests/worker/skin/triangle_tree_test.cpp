@@ -43,39 +43,6 @@ Corners corners(const TriangleMesh& mesh, int t) {
   return {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
 }
 
-std::vector<Eigen::AlignedBox3f> boxes_of(const TriangleMesh& mesh) {
-  std::vector<Eigen::AlignedBox3f> boxes;
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-    Eigen::AlignedBox3d box;
-    for (const auto& corner : corners(mesh, t)) box.extend(corner);
-    boxes.push_back(box_around(box));
-  }
-  return boxes;
-}
-
-TEST(BoxTree, FindsThePairsThatEveryPairByItselfTells) {
-  for (const int count : {1, 2, 4, 5, 9, 700}) {
-    const auto boxes = boxes_of(scattered(count));
-    const auto is_kept = [](int i, int j) { return (i + j) % 3 != 0; };
-    std::vector<std::pair<int, int>> wanted;
-    for (int i = 0; i < count; ++i)
-      for (int j = i + 1; j < count; ++j)
-        if (is_kept(i, j) && boxes[i].intersects(boxes[j])) wanted.emplace_back(i, j);
-    EXPECT_EQ(BoxTree(boxes).pairs(is_kept), wanted) << count;
-  }
-  EXPECT_TRUE(BoxTree({}).pairs([](int, int) { return true; }).empty());
-}
-
-TEST(BoxTree, FindsThePairsOfATreeThatIsBuiltSideBySide) {
-  const auto boxes = boxes_of(scattered(20000));
-  std::vector<std::pair<int, int>> wanted;
-  for (int j = 0; j < 200; ++j)
-    for (int i = 0; i < j; ++i)
-      if (boxes[i].intersects(boxes[j])) wanted.emplace_back(i, j);
-  std::sort(wanted.begin(), wanted.end());
-  EXPECT_EQ(BoxTree(boxes).pairs([](int, int j) { return j < 200; }), wanted);
-}
-
 TEST(BoxTree, BoxesInFloatsHoldTheirBoxes) {
   const Eigen::AlignedBox3d box(Eigen::Vector3d(0.1, -0.1, 1.0 / 3), Eigen::Vector3d(0.7, 0.3, 2.0 / 3));
   const Eigen::AlignedBox3f around = box_around(box);
