@@ -97,7 +97,7 @@ void Heartbeater::beat() {
   request.set_fencing_token(fencing_token_);
   {
     const std::lock_guard lock(mutex_);
-    batch_.take(request, steady_clock::now());
+    batch_.take(request);
   }
   grpc::ClientContext context;
   context.set_deadline(system_clock::now() + kCallDeadline);

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/agent/progress_batch.h"
 
-#include <google/protobuf/util/message_differencer.h>
-
 #include <algorithm>
 #include <utility>
 
 namespace skinframe::agent {
 
-using google::protobuf::util::MessageDifferencer;
-
 void ProgressBatch::add(v1::JobProgress progress) {
-  const bool nothing_new = empty() && last_ && MessageDifferencer::Equals(*last_, progress);
-  if (nothing_new) return;
   last_ = progress;
   last_->clear_note();
   // The newest of this printer: others may run beside it.
@@ -30,11 +24,8 @@ void ProgressBatch::add(v1::JobProgress progress) {
 
 void ProgressBatch::add(v1::PrinterResult printer) { printers_.push_back(std::move(printer)); }
 
-void ProgressBatch::take(v1::HeartbeatRequest& request, TimePoint now) {
-  const bool again = last_ && (now - changed_ < kTellAgainFor || now - told_ >= kTellAgainEvery);
-  if (!empty()) changed_ = now;
-  if (empty() && again) *request.add_progress() = *last_;
-  if (!empty() || again) told_ = now;
+void ProgressBatch::take(v1::HeartbeatRequest& request) {
+  if (empty() && last_) *request.add_progress() = *last_;
   for (auto& progress : progress_) *request.add_progress() = std::move(progress);
   for (auto& printer : printers_) *request.add_printers() = std::move(printer);
   progress_.clear();

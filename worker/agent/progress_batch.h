@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the next heartbeat tells. Between two heartbeats a fast stage says more than a person can read: lines
 // of one printer, stage and iteration are replaced by the newest, and a full batch gives up its oldest ticks.
-// While nothing new is said the last known progress is told again, so that a watcher sees the job alive: with
-// each heartbeat for kTellAgainFor, which covers the stages of most jobs, then every kTellAgainEvery, so that
-// a stage of an hour does not fill the server's store with one and the same event. proto/README.md states the
-// rule. Not thread-safe.
+// While nothing new is said the last known progress is told again, so that a watcher sees the job alive.
+// Not thread-safe.
 #pragma once
 
-#include <chrono>
 #include <deque>
 #include <optional>
 #include <vector>
@@ -24,12 +21,8 @@ class ProgressBatch {
   void add(v1::JobProgress progress);
   void add(v1::PrinterResult printer);
 
-  static constexpr std::chrono::seconds kTellAgainFor{10};
-  static constexpr std::chrono::seconds kTellAgainEvery{5};
-  using TimePoint = std::chrono::steady_clock::time_point;
-
-  // Moves what is pending into the request, or what is to be told again.
-  void take(v1::HeartbeatRequest& request, TimePoint now);
+  // Moves what is pending into the request.
+  void take(v1::HeartbeatRequest& request);
   // The request did not arrive: its content comes before what was added since.
   void give_back(const v1::HeartbeatRequest& request);
   bool empty() const { return progress_.empty() && printers_.empty(); }
@@ -40,7 +33,6 @@ class ProgressBatch {
   std::deque<v1::JobProgress> progress_;
   std::deque<v1::PrinterResult> printers_;
   std::optional<v1::JobProgress> last_;
-  TimePoint changed_{}, told_{};  // when something new, and when anything, was last told
 };
 
 }  // namespace skinframe::agent

@@ -75,6 +75,13 @@ absl::StatusOr<std::optional<JobRecord>> lease(JobStore& store) {
                           [](const JobRecord& job, std::int64_t token) { return leased(job, token, kNoon); });
 }
 
+std::string lines_of(PostgresStatement& statement) {
+  std::string lines;
+  while (statement.step()) lines += statement.bytes(0) + "\n";
+  EXPECT_TRUE(statement.status().ok()) << statement.status();
+  return lines;
+}
+
 TEST(PostgresStore, ALeaseWalksTheIndexAlsoWhenTheStatisticsKnowOfNoQueuedJob) {
   const std::string where = shared_postgres().new_database();
   open_at(where);
@@ -92,10 +99,7 @@ TEST(PostgresStore, ALeaseWalksTheIndexAlsoWhenTheStatisticsKnowOfNoQueuedJob) {
   ASSERT_TRUE(session->execute("ANALYZE jobs").ok());
   ASSERT_TRUE(add(5001, 25000, v1::JOB_STATE_QUEUED).ok());
   PostgresStatement explain(*session, "EXPLAIN " + first_queued_sql<PostgresSession>());
-  std::string plan;
-  explain.bind_text("t3").bind(std::int64_t{0});
-  while (explain.step()) plan += explain.bytes(0) + "\n";
-  ASSERT_TRUE(explain.status().ok()) << explain.status();
+  const std::string plan = lines_of(explain.bind_text("t3").bind(std::int64_t{0}));
   EXPECT_NE(plan.find("Index Scan using jobs_queue"), std::string::npos) << plan;
   EXPECT_EQ(plan.find("Sort"), std::string::npos) << plan;
 }
@@ -105,9 +109,7 @@ TEST(PostgresStore, AStatementThatMustSortIsNotCompiledForIt) {
   open_at(where);
   const auto session = *PostgresSession::open(where);
   PostgresStatement explain(*session, "EXPLAIN ANALYZE SELECT job_id FROM jobs ORDER BY detail");
-  std::string plan;
-  while (explain.step()) plan += explain.bytes(0) + "\n";
-  ASSERT_TRUE(explain.status().ok()) << explain.status();
+  const std::string plan = lines_of(explain);
   EXPECT_NE(plan.find("Sort"), std::string::npos) << plan;
   EXPECT_EQ(plan.find("JIT"), std::string::npos) << plan;
 }
