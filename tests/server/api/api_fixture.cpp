@@ -53,6 +53,16 @@ v1::UploadArtifactRequest::Header ApiTest::header(const std::string& content, st
   return header;
 }
 
+v1::StatArtifactResponse ApiTest::stat(const std::string& sha256, grpc::StatusCode expected) {
+  grpc::ClientContext context;
+  prepare(context);
+  v1::StatArtifactRequest request;
+  request.set_sha256(sha256);
+  v1::StatArtifactResponse response;
+  EXPECT_EQ(artifacts_->Stat(&context, request, &response).error_code(), expected);
+  return response;
+}
+
 grpc::Status ApiTest::upload(const v1::UploadArtifactRequest::Header& header,
                              const std::vector<std::string>& chunks) {
   grpc::ClientContext context;

@@ -31,6 +31,7 @@ class ApiTest : public testing::Test {
 
   // Uploads the content in one chunk; returns its name.
   std::string put(const std::string& content);
+  v1::StatArtifactResponse stat(const std::string& sha256, grpc::StatusCode expected = grpc::StatusCode::OK);
   grpc::Status upload(const v1::UploadArtifactRequest::Header& header,
                       const std::vector<std::string>& chunks);
   v1::UploadArtifactRequest::Header header(const std::string& content, std::int64_t offset = 0);

@@ -7,15 +7,6 @@ namespace {
 
 class ArtifactServiceTest : public ApiTest {
  protected:
-  v1::StatArtifactResponse stat(const std::string& sha256, grpc::StatusCode expected = grpc::StatusCode::OK) {
-    grpc::ClientContext context;
-    set_deadline(context);
-    v1::StatArtifactRequest request;
-    request.set_sha256(sha256);
-    v1::StatArtifactResponse response;
-    EXPECT_EQ(artifacts_->Stat(&context, request, &response).error_code(), expected);
-    return response;
-  }
   grpc::StatusCode download(const std::string& sha256, std::int64_t offset, std::int64_t length,
                             std::string* content) {
     grpc::ClientContext context;
