@@ -38,7 +38,7 @@ class Resume : public FaultTest {
 };
 
 TEST_F(Resume, AKilledFrameJobGoesOnFromItsCheckpointToTheResultOfSolveFrame) {
-  set_problem(integration::tower(9, 9, 12, 600));
+  set_problem(integration::tower(12, 12, 14, 600));
   begin({Store::kSqlite, 1, 2});
   if (HasFatalFailure()) return;
   const std::string id = witness_->submit(frame_job());
