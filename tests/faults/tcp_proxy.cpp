@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/faults/tcp_proxy.h"
 
-#include <arpa/inet.h>
 #include <netinet/in.h>
 #include <netinet/tcp.h>
 #include <sys/socket.h>
@@ -10,16 +9,10 @@
 #include <array>
 #include <stdexcept>
 
+#include "tests/fixture/loopback.h"
+
 namespace skinframe::faults {
 namespace {
-
-sockaddr_in loopback(int port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  return address;
-}
 
 int new_socket() { return ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0); }
 
@@ -33,12 +26,8 @@ void reset_on_close(int fd) {
 
 TcpProxy::TcpProxy(const std::string& server_address)
     : server_port_(std::stoi(server_address.substr(server_address.rfind(':') + 1))), listener_(new_socket()) {
-  sockaddr_in own = loopback(0);
-  socklen_t size = sizeof own;
-  if (::bind(listener_, reinterpret_cast<sockaddr*>(&own), size) != 0 || ::listen(listener_, 64) != 0 ||
-      ::getsockname(listener_, reinterpret_cast<sockaddr*>(&own), &size) != 0)
-    throw std::runtime_error("the proxy cannot listen");
-  address_ = "127.0.0.1:" + std::to_string(ntohs(own.sin_port));
+  address_ = "127.0.0.1:" + std::to_string(test::bind_to_any_port(listener_));
+  if (::listen(listener_, 64) != 0) throw std::runtime_error("the proxy cannot listen");
   accepting_ = std::thread([this] { accept_all(); });
 }
 
@@ -65,7 +54,7 @@ void TcpProxy::accept_all() {
     const int client = ::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
     if (client < 0) return;
     const int server = new_socket();
-    const sockaddr_in to = loopback(server_port_);
+    const sockaddr_in to = test::loopback(server_port_);
     if (::connect(server, reinterpret_cast<const sockaddr*>(&to), sizeof to) != 0) {
       reset_on_close(client);
       ::close(client);

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What deploy/METRICS.md documents is there, in the real programs, and moves when a job runs; nothing else is
 // shown.
-#include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -14,34 +12,17 @@
 #include <set>
 #include <sstream>
 
+#include "tests/fixture/loopback.h"
 #include "tests/integration/farm.h"
 #include "tests/integration/tower_problem.h"
 
 namespace skinframe::integration {
 namespace {
 
-sockaddr_in loopback(int port) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  address.sin_port = htons(static_cast<std::uint16_t>(port));
-  return address;
-}
-
-int free_port() {
-  const int probe = ::socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address = loopback(0);
-  socklen_t size = sizeof address;
-  EXPECT_EQ(::bind(probe, reinterpret_cast<sockaddr*>(&address), size), 0);
-  EXPECT_EQ(::getsockname(probe, reinterpret_cast<sockaddr*>(&address), &size), 0);
-  ::close(probe);
-  return ntohs(address.sin_port);
-}
-
 // The whole answer to what is sent; empty where nobody listens.
 std::string send_and_hear(int port, const std::string& request) {
   const int link = ::socket(AF_INET, SOCK_STREAM, 0);
-  const sockaddr_in address = loopback(port);
+  const sockaddr_in address = test::loopback(port);
   std::string answer;
   if (::connect(link, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
       ::send(link, request.data(), request.size(), MSG_NOSIGNAL) > 0) {
@@ -105,7 +86,7 @@ std::set<std::string> names_of(const std::map<std::string, double>& sums) {
 
 TEST(Metrics, EachDocumentedOneIsThereAndMovesWithAJobAndThereIsNoOther) {
   const Scratch scratch;
-  const int server_port = free_port(), worker_port = free_port();
+  const int server_port = test::free_port(), worker_port = test::free_port();
   Farm farm(scratch, {"--metrics", std::to_string(server_port)});
   const auto at_rest = scrape(server_port);
   std::ofstream(scratch / "tower.json") << tower(9, 9, 12, 600).dump();
@@ -154,7 +135,7 @@ TEST(Metrics, EachDocumentedOneIsThereAndMovesWithAJobAndThereIsNoOther) {
 
 TEST(Metrics, WhateverIsSentTheEndpointGoesOn) {
   const Scratch scratch;
-  const int port = free_port();
+  const int port = test::free_port();
   const Farm farm(scratch, {"--metrics", std::to_string(port)});
   EXPECT_THAT(get(port, "/metrics?x=1"), testing::StartsWith("HTTP/1.1 200"));
   EXPECT_THAT(get(port, "/"), testing::StartsWith("HTTP/1.1 404"));
@@ -166,7 +147,7 @@ TEST(Metrics, WhateverIsSentTheEndpointGoesOn) {
   std::vector<int> idle;
   for (int i = 0; i < 40; ++i) {
     idle.push_back(::socket(AF_INET, SOCK_STREAM, 0));
-    const sockaddr_in address = loopback(port);
+    const sockaddr_in address = test::loopback(port);
     EXPECT_EQ(::connect(idle.back(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
   }
   EXPECT_TRUE(eventually([&] { return get(port, "/metrics").starts_with("HTTP/1.1 200"); }, Seconds(30)));
