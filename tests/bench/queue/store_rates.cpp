@@ -87,33 +87,41 @@ Rates measure_rates(server::JobStore& store, int jobs, int callers) {
   return rates;
 }
 
-LeaseCost measure_lease_cost(server::JobStore& store, int queued, int tenants, int leases) {
+void fill(server::JobStore& store, int queued, int tenants) {
   rate_of(queued, kFillers, [&](int n) {
     Change job = server::example_job("job-" + std::to_string(n), n % 21 - 10);
     job.record.job.set_tenant("tenant-" + std::to_string(n % tenants));
     check(store.create(job, kNoLimit).status());
   });
-  std::vector<double> taken;
-  std::vector<double> duties;
+}
+
+std::vector<LeaseCost> measure_lease_costs(const std::vector<server::JobStore*>& stores, int leases) {
+  std::vector<std::vector<double>> taken(stores.size()), duties(stores.size());
   for (int i = 0; i < leases; ++i) {
-    const auto begin = SteadyClock::now();
-    const JobRecord job = lease(store);
-    taken.push_back(1e6 * seconds_since(begin));
-    check(store
-              .modify(job.job.job_id(),
-                      [&](const JobRecord& record) {
-                        return server::decide_undelivered(record, job.lease.fencing_token, server::kNoon);
-                      })
-              .status());
-    const auto look = SteadyClock::now();
-    check(store.expired_leases(server::kNoon, 100).status());
-    check(store.passed_deadlines(server::kNoon, 100).status());
-    duties.push_back(1e6 * seconds_since(look));
+    for (std::size_t s = 0; s < stores.size(); ++s) {
+      const auto begin = SteadyClock::now();
+      const JobRecord job = lease(*stores[s]);
+      taken[s].push_back(1e6 * seconds_since(begin));
+      check(stores[s]
+                ->modify(job.job.job_id(),
+                         [&](const JobRecord& record) {
+                           return server::decide_undelivered(record, job.lease.fencing_token, server::kNoon);
+                         })
+                .status());
+      const auto look = SteadyClock::now();
+      check(stores[s]->expired_leases(server::kNoon, 100).status());
+      check(stores[s]->passed_deadlines(server::kNoon, 100).status());
+      duties[s].push_back(1e6 * seconds_since(look));
+    }
   }
-  std::sort(taken.begin(), taken.end());
-  std::sort(duties.begin(), duties.end());
-  return {taken[taken.size() / 4], taken[taken.size() / 2], taken[taken.size() * 95 / 100],
-          duties[duties.size() / 4]};
+  std::vector<LeaseCost> costs;
+  for (std::size_t s = 0; s < stores.size(); ++s) {
+    std::sort(taken[s].begin(), taken[s].end());
+    std::sort(duties[s].begin(), duties[s].end());
+    costs.push_back({taken[s][taken[s].size() / 2], taken[s][taken[s].size() * 95 / 100],
+                     duties[s][duties[s].size() / 2]});
+  }
+  return costs;
 }
 
 }  // namespace skinframe::bench

@@ -2,6 +2,8 @@
 // What a store alone can do: jobs made, leased and completed a second, each durable when it counts.
 #pragma once
 
+#include <vector>
+
 #include "server/store/job_store.h"
 
 namespace skinframe::bench {
@@ -18,14 +20,16 @@ struct Rates {
 Rates measure_rates(server::JobStore& store, int jobs, int callers);
 
 struct LeaseCost {
-  double quarter_us = 0;  // a quarter was quicker: what it costs while nothing else has the processor
   double median_us = 0;
   double p95_us = 0;
-  double duties_quarter_us = 0;  // the look for expired leases and passed deadlines, ten times a second
+  double duties_median_us = 0;  // the look for expired leases and passed deadlines, ten times a second
 };
 
-// One caller leases `leases` jobs of a store that has `queued` of them, of `tenants` tenants; the queue is
-// filled up first. The jobs go back into the queue after each look, so that its depth stays.
-LeaseCost measure_lease_cost(server::JobStore& store, int queued, int tenants, int leases);
+// Puts so many jobs of so many tenants into an empty store's queue.
+void fill(server::JobStore& store, int queued, int tenants);
+
+// One caller leases so many jobs of each store, in turn, so that what else the machine does meets all of them
+// alike. The jobs go back into the queue after each look, so that its depth stays.
+std::vector<LeaseCost> measure_lease_costs(const std::vector<server::JobStore*>& stores, int leases);
 
 }  // namespace skinframe::bench
