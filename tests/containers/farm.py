@@ -104,7 +104,7 @@ class Farm:
     def start_client(self) -> None:
         """One that stays, to be asked by exec."""
         self.client = self.run_container(
-            "client", "client", ["infinity"], "--entrypoint", "sleep", "--volume", f"{self.meshes}:/work",
+            "client", "client", ["infinity"], "--entrypoint", "sleep", "--volume", f"{self.meshes}:/meshes",
             secrets=("ca.crt", "client.crt", "client.key"))
 
     def client_words(self, *words: object) -> list[object]:

@@ -7,6 +7,7 @@ set -euo pipefail
 name=$1
 root=$(mktemp -d /var/tmp/skinframe-base.XXXXXX)  # not where devices or programs are forbidden
 trap 'rm -rf "$root" "$root.log"' EXIT
+# awk may leave before cat has said all, and one of the two files may be absent: what counts is told below.
 mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/debian.sources 2>/dev/null |
   awk '/^URIs:/ {print $2; exit} /^deb / {for (i = 2; i <= NF; ++i) if ($i ~ /:\/\//) {print $i; exit}}' || true)
 [ -n "$mirror" ] || { echo "make_base: no package source in /etc/apt" >&2; exit 1; }

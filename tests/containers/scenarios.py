@@ -70,8 +70,8 @@ class Work(Running):
         for printer in PRINTERS:
             words += ["--printer", printer]
         table = stage.farm.ask(*words).stdout
-        checked = stage.engine("run", "--rm", "--volume", f"{stage.farm.meshes}:/work:ro", "--entrypoint",
-                               "skinframe-worker", stage.images["worker"], "check", "/work/both")
+        checked = stage.engine("run", "--rm", "--volume", f"{stage.farm.meshes}:/meshes:ro", "--entrypoint",
+                               "skinframe-worker", stage.images["worker"], "check", "/meshes/both")
         for printer in PRINTERS:
             self.assertIn(printer, table)
             self.assertIn(f"{printer}: yes", checked.stdout)
