@@ -23,6 +23,17 @@ inline std::string environment_name(const std::string& prefix, const std::string
   return name;
 }
 
+// CLI11's words for wrong usage; of a bad file they are without its name.
+inline std::string what_is_wrong(const CLI::App* app, const CLI::Error& error) {
+  const bool of_the_file = error.get_name() == "ConfigError";
+  if (of_the_file) {
+    return "--config " + app->get_config_ptr()->as<std::string>() + ": " + error.what() +
+           ": a line is NAME = VALUE with the name of an option, without its dashes\n" +
+           "Run with --help for more information.\n";
+  }
+  return CLI::FailureMessage::simple(app, error);
+}
+
 // For an app that has all its options. An option that has a name in the environment already keeps that.
 inline void take_from_surroundings(CLI::App& app, const std::string& prefix) {
   for (CLI::Option* option : app.get_options()) {
@@ -36,6 +47,7 @@ inline void take_from_surroundings(CLI::App& app, const std::string& prefix) {
                  "environment, as " +
                      environment_name(prefix, "name"));
   app.allow_config_extras(CLI::config_extras_mode::error);
+  app.failure_message(what_is_wrong);
 }
 
 }  // namespace skinframe

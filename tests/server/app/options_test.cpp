@@ -61,6 +61,7 @@ TEST(Options, AFileWithALineThatNamesNoOptionOrThatIsNotThereIsWrongUsage) {
     const auto parsed = parse({"--data", "d", "--config", name.c_str()});
     ASSERT_TRUE(std::holds_alternative<EarlyEnd>(parsed)) << name;
     EXPECT_EQ(std::get<EarlyEnd>(parsed).exit_code, 2);
+    EXPECT_NE(std::get<EarlyEnd>(parsed).text.find(name), std::string::npos) << "it names the file";
   }
 }
 
