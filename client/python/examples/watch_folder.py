@@ -81,6 +81,15 @@ class FolderWatch:
         orders = (Order(path) for path in sorted(self.state.glob("*.json")))
         self.open = {order.path.stem: order for order in orders if order.phase != "done"}
 
+    def greet(self) -> None:
+        """Refused before the first file is: a printer that the farm does not have."""
+        known = sorted(printer.id for printer in self.farm.printers())
+        for printer in self.args.printer:
+            if printer not in known:
+                raise skinframe.Refused(f"the farm at {self.args.server} has no printer {printer!r}; "
+                                        f"it has: {', '.join(known)}")
+        print(f"watching {self.args.inbox} for {self.args.server}; results come to {self.args.outbox}", flush=True)
+
     def run_once(self) -> None:
         for path in self.settled():
             self.intend(path)
@@ -207,11 +216,23 @@ def main() -> int:
             except BlockingIOError:
                 print(f"another program watches {args.inbox} already", file=sys.stderr)
                 return 1
+            greeted, said = False, ""
             while not stop.is_set():
                 try:
+                    if not greeted:
+                        watch.greet()
+                    greeted = True
                     watch.run_once()
-                except (skinframe.Unreachable, skinframe.Full) as later:
-                    print(f"{later}; going on when it answers", flush=True)
+                    said = ""
+                except skinframe.SkinframeError as error:
+                    later = isinstance(error, (skinframe.Unreachable, skinframe.Full))
+                    if not greeted and not later:
+                        print(error, file=sys.stderr)
+                        return 1
+                    kind = type(error).__name__ if later else str(error)
+                    if kind != said:  # once, not at every look
+                        print(f"{error}; " + ("going on when it answers" if later else "trying again"), flush=True)
+                    said = kind
                 stop.wait(args.poll)
     return 0
 

@@ -108,6 +108,23 @@ class WatchFolder(FarmTest):
         self.assertIn("INVALID_INPUT", reason.read_text())
         self.assertTrue(eventually((self.inbox / "failed" / "broken.stl").exists))
 
+    def test_a_printer_that_the_farm_does_not_have_is_refused_at_once(self):
+        self.put("one.stl")
+        wrong = self.start("--printer", "none-such")
+        self.assertEqual(wrong.wait(30), 1)
+        self.assertIn("none-such", self.log())
+        self.assertIn(PRINTER, self.log())
+        self.assertTrue((self.inbox / "one.stl").exists())
+
+    def test_a_server_that_is_not_there_is_told_of_once_and_waited_for(self):
+        self.farm.kill_server()
+        self.put("one.stl")
+        self.start()
+        self.assertTrue(eventually(lambda: "no server answers" in self.log(), 30), self.log())
+        self.farm.start_server()
+        self.assertTrue(eventually(lambda: len(self.jobs()) == 1), self.log())
+        self.assertEqual(self.log().count("going on when it answers"), 1)
+
     def test_two_programs_do_not_watch_one_folder(self):
         self.start()
         self.assertTrue(eventually((self.inbox / ".skinframe" / "lock").exists))
