@@ -13,6 +13,7 @@
 #include <memory>
 #include <vector>
 
+#include "tests/bench/queue/one_core.h"
 #include "tests/bench/queue/places.h"
 #include "tests/bench/queue/service_times.h"
 #include "tests/bench/queue/store_rates.h"
@@ -46,19 +47,9 @@ void say(const std::string& line) {
   std::fflush(stdout);
 }
 
-Figures measure(Places& places, const std::string& kind, const Sizes& sizes) {
-  Figures figures;
-  for (const bool batched : {false, true}) {
-    const auto store = places.fresh_store(kind);
-    const int callers = batched ? sizes.callers : 1;
-    const double sync = sync_ms(places.fresh_folder(), 25);
-    const Rates rates = measure_rates(*store, batched ? sizes.jobs_batched : sizes.jobs_one_by_one, callers);
-    say(fmt::format(
-        "| {} | {} callers | enqueue {:.0f}/s | lease {:.0f}/s | complete {:.0f}/s | cycle {:.0f}/s | "
-        "one sync {:.2f} ms |",
-        kind, callers, rates.enqueue, rates.lease, rates.complete, rates.cycle(), sync));
-    if (batched) figures.cycle = rates.cycle();
-  }
+// How many times as long a lease, or the duties, take with the deep queue as with the shallow one.
+double measure_flatness(Places& places, const std::string& kind, const Sizes& sizes) {
+  const OneCore one_core;
   const std::array depths = {sizes.shallow_queue, sizes.deep_queue};
   std::vector<std::unique_ptr<server::JobStore>> stores;
   for (const int queued : depths) {
@@ -72,9 +63,24 @@ Figures measure(Places& places, const std::string& kind, const Sizes& sizes) {
         "us | duties {:.0f} us |",
         kind, depths[i], sizes.tenants, costs[i].median_us, costs[i].p95_us, costs[i].duties_median_us));
   }
-  figures.flat_ratio = std::max(costs[1].median_us / costs[0].median_us,
-                                costs[1].duties_median_us / costs[0].duties_median_us);
-  stores.clear();
+  return std::max(costs[1].median_us / costs[0].median_us,
+                  costs[1].duties_median_us / costs[0].duties_median_us);
+}
+
+Figures measure(Places& places, const std::string& kind, const Sizes& sizes) {
+  Figures figures;
+  for (const bool batched : {false, true}) {
+    const auto store = places.fresh_store(kind);
+    const int callers = batched ? sizes.callers : 1;
+    const double sync = sync_ms(places.fresh_folder(), 25);
+    const Rates rates = measure_rates(*store, batched ? sizes.jobs_batched : sizes.jobs_one_by_one, callers);
+    say(fmt::format(
+        "| {} | {} callers | enqueue {:.0f}/s | lease {:.0f}/s | complete {:.0f}/s | cycle {:.0f}/s | "
+        "one sync {:.2f} ms |",
+        kind, callers, rates.enqueue, rates.lease, rates.complete, rates.cycle(), sync));
+    if (batched) figures.cycle = rates.cycle();
+  }
+  figures.flat_ratio = measure_flatness(places, kind, sizes);
   server::ServerOptions options;
   options.listen = "127.0.0.1:0";
   options.data = places.fresh_folder();
