@@ -21,7 +21,7 @@ forbid client '(worker|server)/' "the client knows proto/ only"
 forbid server '(worker|client)/' "the server knows proto/ only"
 forbid worker '(server|client)/' "the worker knows proto/ only"
 forbid proto "(server|worker|client)/" "proto knows nobody"
-for room in run profile mesh raster solid skin stress frame mechanics optimize support problem export report sample pipeline check picture job metrics; do
+for room in run profile mesh raster solid skin stress frame mechanics optimize support problem export report sample pipeline check job metrics; do
   forbid "worker/$room" '(skinframe/v1|grpc|google/protobuf)' "only the agent sees gRPC and protobuf"
 done
 stages=(profile mesh solid skin stress frame mechanics optimize support problem export report pipeline)
