@@ -57,17 +57,6 @@ std::optional<std::int64_t> trailing_number(const grpc::ClientContext& context, 
   return value;
 }
 
-Backoff::Backoff(std::chrono::milliseconds first, std::chrono::milliseconds longest, std::uint64_t seed)
-    : first_(first), longest_(longest), current_(first), random_(seed) {}
-
-std::chrono::milliseconds Backoff::next() {
-  std::uniform_real_distribution<double> part(0.5, 1.0);
-  const auto delay = std::chrono::milliseconds(
-      static_cast<std::int64_t>(static_cast<double>(current_.count()) * part(random_)));
-  current_ = std::min(current_ * 2, longest_);
-  return delay;
-}
-
 grpc::Status call_once(const Connection& connection, std::chrono::milliseconds deadline,
                        const Attempt& attempt) {
   grpc::ClientContext context;

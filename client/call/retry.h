@@ -9,25 +9,13 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <random>
 
 #include "client/call/connect.h"
+#include "proto/transport/backoff.h"
 
 namespace skinframe::client {
 
-// The k-th delay lies between half of min(first * 2^k, longest) and all of it: clients that lost their server
-// at one moment do not come back at one moment.
-class Backoff {
- public:
-  Backoff(std::chrono::milliseconds first, std::chrono::milliseconds longest,
-          std::uint64_t seed = std::random_device{}());
-  std::chrono::milliseconds next();
-  void reset() { current_ = first_; }
-
- private:
-  std::chrono::milliseconds first_, longest_, current_;
-  std::mt19937_64 random_;
-};
+using transport::Backoff;
 
 struct RetryPolicy {
   int attempts = 4;                            // in all, >= 1

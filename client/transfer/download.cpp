@@ -11,7 +11,7 @@
 
 #include "client/call/retry.h"
 #include "client/transfer/safe_path.h"
-#include "client/transfer/sha256.h"
+#include "proto/transport/sha256.h"
 #include "skinframe/v1/artifact.grpc.pb.h"
 
 namespace skinframe::client {
@@ -62,7 +62,7 @@ Done download_file(const Connection& connection, v1::ArtifactService::Stub& stub
                    const fs::path& target) {
   PendingFile pending(target);
   if (!pending.open()) return cannot_write(target, std::strerror(errno));
-  Sha256 hash;
+  transport::Sha256 hash;
   std::int64_t received = 0;
   std::optional<Failure> local;
   Backoff backoff(std::chrono::milliseconds(100), std::chrono::milliseconds(2000));

@@ -7,12 +7,12 @@
 #include <fstream>
 
 #include "client/call/retry.h"
+#include "proto/transport/upload_stream.h"
 #include "skinframe/v1/artifact.grpc.pb.h"
 
 namespace skinframe::client {
 namespace {
 
-constexpr std::size_t kChunkBytes = 256 * 1024;
 constexpr int kAttemptsWithoutProgress = 6;
 constexpr std::chrono::minutes kStreamDeadline{30};
 
@@ -21,21 +21,7 @@ grpc::Status send(v1::ArtifactService::Stub& stub, grpc::ClientContext& context,
   std::ifstream in(path, std::ios::binary);
   in.seekg(offset);
   if (!in) return {grpc::StatusCode::DATA_LOSS, "the file changed while it was uploaded"};
-  v1::UploadArtifactResponse response;
-  const auto writer = stub.Upload(&context, &response);
-  v1::UploadArtifactRequest part;
-  part.mutable_header()->set_sha256(digest.sha256);
-  part.mutable_header()->set_size_bytes(digest.size_bytes);
-  part.mutable_header()->set_offset(offset);
-  std::string buffer(kChunkBytes, '\0');
-  for (bool open = writer->Write(part); open;) {
-    in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-    if (in.gcount() == 0) break;
-    part.set_chunk(buffer.data(), static_cast<std::size_t>(in.gcount()));
-    open = writer->Write(part);
-  }
-  writer->WritesDone();
-  return writer->Finish();
+  return transport::send_rest(stub, context, digest, offset, in);
 }
 
 bool worth_another(const grpc::Status& status) {

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "client/call/connect.h"
-#include "client/transfer/sha256.h"
+#include "client/transfer/input_file.h"
 
 namespace skinframe::client {
 

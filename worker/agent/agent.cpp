@@ -3,17 +3,13 @@
 
 #include <fmt/format.h>
 #include <google/protobuf/util/time_util.h>
-#include <grpcpp/create_channel.h>
-#include <grpcpp/security/credentials.h>
 #include <signal.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
-#include <fstream>
 #include <random>
-#include <sstream>
 #include <stdexcept>
 #include <system_error>
 #include <thread>
@@ -22,10 +18,12 @@
 
 #include "proto/metrics/metrics_listener.h"
 #include "proto/metrics/process_metrics.h"
-#include "worker/agent/backoff.h"
+#include "proto/transport/backoff.h"
+#include "proto/transport/channel.h"
 #include "worker/agent/child_process.h"
 #include "worker/agent/job_runner.h"
 #include "worker/agent/pulse.h"
+#include "worker/agent/wait.h"
 #include "worker/agent/work_folder.h"
 #include "worker/run/stop_signals.h"
 
@@ -51,31 +49,14 @@ std::string default_name() {
 }
 
 Result<std::shared_ptr<grpc::Channel>> open_channel(const AgentOptions& options) {
-  std::shared_ptr<grpc::ChannelCredentials> credentials = grpc::InsecureChannelCredentials();
-  if (!options.tls_root_cert.empty()) {
-    grpc::SslCredentialsOptions ssl;
-    for (const auto& [file, pem] : {std::pair(&options.tls_root_cert, &ssl.pem_root_certs),
-                                    std::pair(&options.tls_cert, &ssl.pem_cert_chain),
-                                    std::pair(&options.tls_key, &ssl.pem_private_key)}) {
-      if (file->empty()) continue;
-      std::ifstream in(*file);
-      std::stringstream text;
-      text << in.rdbuf();
-      *pem = text.str();
-      if (!in || pem->empty())
-        return io_error(fmt::format("{}: no TLS certificate or key can be read there", file->string()));
-    }
-    credentials = grpc::SslCredentials(ssl);
-  }
-  grpc::ChannelArguments arguments;
-  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, 20'000);
-  arguments.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, 5'000);
-  arguments.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 100);
-  // A container that restarts has another address; gRPC would ask for it every 30 s at most.
-  arguments.SetInt(GRPC_ARG_DNS_MIN_TIME_BETWEEN_RESOLUTIONS_MS, 1'000);
-  arguments.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 5'000);  // for one attempt, its TLS handshake included
-  arguments.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 2'000);
-  return grpc::CreateCustomChannel(options.server_address, credentials, arguments);
+  transport::ChannelOptions how;
+  how.address = options.server_address;
+  how.tls = {options.tls_root_cert, options.tls_cert, options.tls_key};
+  how.ping_timeout = milliseconds(5'000);
+  how.longest_reconnect = milliseconds(2'000);
+  auto channel = transport::open_channel(how);
+  if (!channel.ok()) return io_error(std::string(channel.status().message()));
+  return *std::move(channel);
 }
 
 Result<std::filesystem::path> work_root(const AgentOptions& options) {
@@ -122,7 +103,7 @@ class Slot {
 
   // Ends on drain as soon as it has no job, on stop at once.
   void run(const std::stop_token& stop, const std::stop_token& drain) {
-    agent::Backoff backoff(milliseconds(100), milliseconds(5000), std::random_device{}());
+    transport::Backoff backoff(milliseconds(100), milliseconds(5000));
     bool answered = true;
     std::stop_source no_more;
     const std::stop_callback on_stop(stop, [&] { no_more.request_stop(); });

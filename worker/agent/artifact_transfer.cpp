@@ -3,45 +3,21 @@
 
 #include <fmt/format.h>
 #include <grpcpp/client_context.h>
-#include <openssl/evp.h>
 
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <memory>
-#include <random>
 #include <utility>
 
-#include "worker/agent/backoff.h"
+#include "proto/transport/backoff.h"
+#include "proto/transport/upload_stream.h"
+#include "worker/agent/wait.h"
 
 namespace skinframe::agent {
 namespace {
 
-constexpr std::size_t kChunkBytes = 256 * 1024;
-
 // A stream that stands still for this long is as good as cut. Enough for 2 GiB over a slow link.
 constexpr std::chrono::minutes kStreamDeadline{10};
-
-class Sha256 {
- public:
-  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
-    SKINFRAME_CHECK(context_ && EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) == 1);
-  }
-  void add(std::string_view bytes) {
-    SKINFRAME_CHECK(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()) == 1);
-  }
-  std::string hex() {
-    std::array<unsigned char, 32> raw{};
-    SKINFRAME_CHECK(EVP_DigestFinal_ex(context_.get(), raw.data(), nullptr) == 1);
-    std::string out;
-    for (const unsigned char byte : raw) out += fmt::format("{:02x}", byte);
-    return out;
-  }
-
- private:
-  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
-};
 
 grpc::Status disk_error(const std::filesystem::path& path, const char* what) {
   return {grpc::StatusCode::INTERNAL, fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno))};
@@ -63,7 +39,7 @@ constexpr int kMaxRefusals = 100;
 template <class Attempt, class Again>
 grpc::Status until_answered(const std::stop_token& stop, const LeaseProof& lease, Attempt attempt,
                             Again again) {
-  Backoff backoff(std::chrono::milliseconds(100), std::chrono::milliseconds(2000), std::random_device{}());
+  transport::Backoff backoff(std::chrono::milliseconds(100), std::chrono::milliseconds(2000));
   int refusals = 0;
   while (!stop.stop_requested()) {
     grpc::ClientContext context;
@@ -88,17 +64,8 @@ grpc::Status until_answered(const std::stop_token& stop, const LeaseProof& lease
 Result<FileDigest> digest_file(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return io_error(fmt::format("{}: {}", path.string(), std::strerror(errno)));
-  Sha256 hash;
-  FileDigest out;
-  std::string buffer(kChunkBytes, '\0');
-  while (in) {
-    in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-    const auto got = static_cast<std::size_t>(in.gcount());
-    hash.add({buffer.data(), got});
-    out.size_bytes += static_cast<std::int64_t>(got);
-  }
+  FileDigest out = transport::digest_of(in);
   if (in.bad()) return io_error(fmt::format("{}: cannot be read", path.string()));
-  out.sha256 = hash.hex();
   return out;
 }
 
@@ -107,7 +74,7 @@ grpc::Status download_artifact(v1::ArtifactService::StubInterface& stub, const s
                                const LeaseProof& lease) {
   std::ofstream out(path, std::ios::binary | std::ios::trunc);
   if (!out) return disk_error(path, "cannot be written");
-  Sha256 hash;
+  transport::Sha256 hash;
   std::int64_t received = 0;
   const grpc::Status status = until_answered(
       stop, lease,
@@ -157,21 +124,7 @@ grpc::Status upload_artifact(v1::ArtifactService::StubInterface& stub, const std
     std::ifstream in(path, std::ios::binary);
     in.seekg(kept);
     if (!in) return disk_error(path, "cannot be read");
-    v1::UploadArtifactResponse response;
-    const auto writer = stub.Upload(&context, &response);
-    v1::UploadArtifactRequest part;
-    part.mutable_header()->set_sha256(digest.sha256);
-    part.mutable_header()->set_size_bytes(digest.size_bytes);
-    part.mutable_header()->set_offset(kept);
-    std::string buffer(kChunkBytes, '\0');
-    for (bool open = writer->Write(part); open && in;) {
-      in.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
-      if (in.gcount() == 0) break;
-      part.set_chunk(buffer.data(), static_cast<std::size_t>(in.gcount()));
-      open = writer->Write(part);
-    }
-    writer->WritesDone();
-    return writer->Finish();
+    return transport::send_rest(stub, context, digest, kept, in);
   };
   return until_answered(stop, lease, attempt, [&](const grpc::Status& status) {
     // DATA_LOSS: the part that the server had kept was not of this file. It has dropped it: once more, from

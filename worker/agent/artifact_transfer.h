@@ -11,15 +11,13 @@
 #include <string>
 #include <string_view>
 
+#include "proto/transport/sha256.h"
 #include "skinframe/v1/artifact.grpc.pb.h"
 #include "worker/run/result.h"
 
 namespace skinframe::agent {
 
-struct FileDigest {
-  std::string sha256;  // 64 lower-case hexadecimal digits
-  std::int64_t size_bytes = 0;
-};
+using transport::FileDigest;
 
 // For which job, and by which lease, a worker asks: its files are those of the job's tenant.
 struct LeaseProof {

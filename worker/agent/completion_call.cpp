@@ -5,10 +5,10 @@
 #include <spdlog/spdlog.h>
 
 #include <chrono>
-#include <random>
 #include <string_view>
 
-#include "worker/agent/backoff.h"
+#include "proto/transport/backoff.h"
+#include "worker/agent/wait.h"
 
 namespace skinframe::agent {
 namespace {
@@ -26,7 +26,7 @@ bool may_be_taken_later(grpc::StatusCode code) {
 
 void send_completion(v1::WorkerService::StubInterface& stub, const v1::CompleteRequest& completion,
                      int attempt, Heartbeater& heartbeater, const std::stop_token& worker_stop) {
-  Backoff backoff(std::chrono::milliseconds(100), std::chrono::milliseconds(1000), std::random_device{}());
+  transport::Backoff backoff(std::chrono::milliseconds(100), std::chrono::milliseconds(1000));
   const auto patience = steady_clock::now() + kCompletionPatience;
   while (true) {
     grpc::ClientContext context;

@@ -7,7 +7,6 @@
 #include <utility>
 
 namespace skinframe::agent {
-namespace {
 
 Conclusion failed(v1::Reason reason, std::string detail, bool retryable) {
   Conclusion out;
@@ -17,6 +16,8 @@ Conclusion failed(v1::Reason reason, std::string detail, bool retryable) {
   out.retryable = retryable;
   return out;
 }
+
+namespace {
 
 Conclusion cancelled() {
   Conclusion out;

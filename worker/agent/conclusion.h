@@ -26,6 +26,9 @@ struct Conclusion {
   bool upload = false;     // WORKDIR/out is the result
 };
 
+// The job ends so; retryable: only the attempt does.
+Conclusion failed(v1::Reason reason, std::string detail, bool retryable);
+
 struct AttemptEnd {
   StopCause stop = StopCause::kNone;
   ChildExit exit;

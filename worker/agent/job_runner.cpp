@@ -13,12 +13,12 @@
 
 #include "worker/agent/artifact_transfer.h"
 #include "worker/agent/assignment.h"
-#include "worker/agent/backoff.h"
 #include "worker/agent/checkpoint_sender.h"
 #include "worker/agent/completion_call.h"
 #include "worker/agent/conclusion.h"
 #include "worker/agent/heartbeater.h"
 #include "worker/agent/supervise.h"
+#include "worker/agent/wait.h"
 #include "worker/agent/work_folder.h"
 #include "worker/metrics/stage_times.h"
 
@@ -31,16 +31,6 @@ using std::chrono::steady_clock;
 constexpr std::uintmax_t kMaxOutcomeBytes = 1024 * 1024;
 constexpr std::size_t kLastLogLines = 5;
 constexpr std::size_t kLastLogLineBytes = 300;
-
-// The attempt cannot go on; how the job ends by that.
-Conclusion give_up(v1::Reason reason, std::string detail, bool retryable) {
-  Conclusion out;
-  out.outcome.state = v1::JOB_STATE_FAILED;
-  out.outcome.reason = reason;
-  out.outcome.detail = std::move(detail);
-  out.retryable = retryable;
-  return out;
-}
 
 class Attempt {
  public:
@@ -84,7 +74,7 @@ class Attempt {
   // Fills in the completion's files.
   Conclusion work(v1::CompleteRequest& completion) {
     const auto folder = JobFolder::create(agent_folder_, id(), assignment_.fencing_token());
-    if (!folder) return give_up(v1::REASON_CRASHED, folder.error().message, true);
+    if (!folder) return failed(v1::REASON_CRASHED, folder.error().message, true);
     if (auto wrong = prepare(folder->path())) return *std::move(wrong);
     AttemptEnd end = run_process(folder->path());
     read_outcome(folder->path() / "outcome.json", end);
@@ -102,7 +92,7 @@ class Attempt {
       end.stop = heartbeater_.cause();
       return conclude(end);
     }
-    return give_up(v1::REASON_CRASHED, fmt::format("{}: {}", what, status.error_message()), true);
+    return failed(v1::REASON_CRASHED, fmt::format("{}: {}", what, status.error_message()), true);
   }
 
   std::optional<Conclusion> prepare(const fs::path& folder) {
@@ -114,7 +104,7 @@ class Attempt {
     const auto request = job_request_json(assignment_, input, warm_start_files, options_.threads_per_job);
     if (!request) {
       const bool refused = request.error().kind == ErrorKind::kUnsupported;
-      return give_up(refused ? v1::REASON_UNSUPPORTED : v1::REASON_INTERNAL, request.error().message, false);
+      return failed(refused ? v1::REASON_UNSUPPORTED : v1::REASON_INTERNAL, request.error().message, false);
     }
     const grpc::Status fetched = download_artifact(stubs_.artifacts, input_sha256(assignment_.spec()), input,
                                                    heartbeater_.stop_token(), proof());
@@ -124,7 +114,7 @@ class Attempt {
     std::ofstream out(folder / "job.json");
     out << *request;
     out.close();
-    if (!out) return give_up(v1::REASON_CRASHED, "the worker's disk: job.json could not be written", true);
+    if (!out) return failed(v1::REASON_CRASHED, "the worker's disk: job.json could not be written", true);
     return std::nullopt;
   }
 
@@ -134,7 +124,7 @@ class Attempt {
     if (chosen.empty()) return std::nullopt;
     std::error_code error;
     fs::create_directory(folder, error);
-    if (error) return give_up(v1::REASON_CRASHED, "the worker's disk: " + error.message(), true);
+    if (error) return failed(v1::REASON_CRASHED, "the worker's disk: " + error.message(), true);
     for (const auto& [printer, file] : chosen) {
       const fs::path path = folder / (std::to_string(files.size()) + ".json");
       const grpc::Status fetched =
@@ -253,10 +243,10 @@ class Attempt {
 
   std::optional<Conclusion> upload(const fs::path& out, v1::CompleteRequest& completion) {
     const auto files = list_result_files(out);
-    if (!files) return give_up(v1::REASON_INTERNAL, files.error().message, false);
+    if (!files) return failed(v1::REASON_INTERNAL, files.error().message, false);
     for (const fs::path& relative : *files) {
       const auto digest = digest_file(out / relative);
-      if (!digest) return give_up(v1::REASON_CRASHED, digest.error().message, true);
+      if (!digest) return failed(v1::REASON_CRASHED, digest.error().message, true);
       if (digest->size_bytes == 0) continue;  // the store holds no empty artifact
       const grpc::Status sent =
           upload_artifact(stubs_.artifacts, out / relative, *digest, heartbeater_.stop_token(), proof());

@@ -12,8 +12,8 @@
 #include <system_error>
 #include <utility>
 
-#include "worker/agent/backoff.h"
 #include "worker/agent/child_process.h"
+#include "worker/agent/wait.h"
 
 namespace skinframe::agent {
 namespace {

@@ -105,17 +105,6 @@ TEST(AskedDelay, IsTakenFromWellFormedDetailsAndBounded) {
   EXPECT_FALSE(asked_delay({grpc::StatusCode::UNAVAILABLE, "", "\xff no message"}));
 }
 
-TEST(BackoffTest, DoublesUpToItsLongestAndKeepsToItsJitter) {
-  Backoff backoff(milliseconds(100), milliseconds(1000), 7);
-  for (const int step : {100, 200, 400, 800, 1000, 1000}) {
-    const auto delay = backoff.next();
-    EXPECT_GE(delay.count(), step / 2);
-    EXPECT_LE(delay.count(), step);
-  }
-  backoff.reset();
-  EXPECT_LE(backoff.next().count(), 100);
-}
-
 TEST(RequestId, IsWhatTheApiTakesAndNeverTheSame) {
   const std::string id = new_request_id();
   EXPECT_THAT(id, testing::MatchesRegex("[0-9a-f]+"));

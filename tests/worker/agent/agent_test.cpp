@@ -9,83 +9,17 @@
 #include <signal.h>
 #include <unistd.h>
 
-#include <condition_variable>
-#include <deque>
 #include <thread>
 
-#include "skinframe/v1/worker.grpc.pb.h"
 #include "tests/client/fake/fake_artifacts.h"
 #include "tests/fixture/temporary_folder.h"
+#include "tests/worker/agent/fake_worker_service.h"
 #include "worker/agent/artifact_transfer.h"
 
 namespace skinframe::agent {
 namespace {
 
 using google::protobuf::util::TimeUtil;
-
-class FakeWorkerService final : public v1::WorkerService::Service {
- public:
-  std::mutex mutex;
-  std::condition_variable changed;
-  std::deque<v1::Assignment> queue;
-  int asked = 0;
-  std::vector<v1::HeartbeatRequest> heartbeats;
-  std::vector<v1::CompleteRequest> completions;
-  std::vector<v1::CheckpointRequest> checkpoints;
-  bool cancel = false;
-  bool take_lease_away = false;
-  int refuse_completions = 0;
-  grpc::StatusCode refusal = grpc::StatusCode::UNAVAILABLE;
-  bool refused = false;
-  int beats_after_refusal = 0;
-  bool stopping = false;
-
-  grpc::Status Lease(grpc::ServerContext* context, const v1::LeaseRequest*,
-                     v1::LeaseResponse* response) override {
-    std::unique_lock lock(mutex);
-    ++asked;
-    changed.notify_all();
-    while (queue.empty() && !stopping && !context->IsCancelled()) {
-      changed.wait_for(lock, std::chrono::milliseconds(5));
-    }
-    if (queue.empty()) return {grpc::StatusCode::UNAVAILABLE, "stopping"};
-    *response->mutable_assignment() = queue.front();
-    queue.pop_front();
-    return grpc::Status::OK;
-  }
-
-  grpc::Status Heartbeat(grpc::ServerContext*, const v1::HeartbeatRequest* request,
-                         v1::HeartbeatResponse* response) override {
-    const std::lock_guard lock(mutex);
-    heartbeats.push_back(*request);
-    if (refused) ++beats_after_refusal;
-    changed.notify_all();
-    if (take_lease_away) return {grpc::StatusCode::ABORTED, "another worker has the job"};
-    response->set_cancel(cancel);
-    *response->mutable_lease_left() = TimeUtil::SecondsToDuration(10);
-    return grpc::Status::OK;
-  }
-
-  grpc::Status Checkpoint(grpc::ServerContext*, const v1::CheckpointRequest* request,
-                          v1::CheckpointResponse*) override {
-    const std::lock_guard lock(mutex);
-    checkpoints.push_back(*request);
-    changed.notify_all();
-    return grpc::Status::OK;
-  }
-
-  grpc::Status Complete(grpc::ServerContext*, const v1::CompleteRequest* request,
-                        v1::CompleteResponse*) override {
-    const std::lock_guard lock(mutex);
-    if (refuse_completions-- > 0) {
-      refused = true;
-      return {refusal, "not now"};
-    }
-    completions.push_back(*request);
-    changed.notify_all();
-    return grpc::Status::OK;
-  }
-};
 
 class AgentTest : public testing::Test {
  protected:
@@ -376,58 +310,6 @@ TEST_F(AgentTest, HeartbeatsKeepTheLeaseWhileTheServerDoesNotTakeTheCompletion) 
   EXPECT_EQ(completion().state(), v1::JOB_STATE_SUCCEEDED);
   const std::lock_guard lock(workers_.mutex);
   EXPECT_GE(workers_.beats_after_refusal, 3);
-}
-
-TEST_F(AgentTest, InterruptedTransfersGoOnWhereTheyStopped) {
-  const std::string big(600'000, 'x');
-  const std::filesystem::path file = folder_.path() / "big";
-  std::ofstream(file) << big;
-  const auto digest = digest_file(file);
-  ASSERT_TRUE(digest.ok());
-  artifacts_.break_upload_after = 300'000;
-  artifacts_.break_download_after = 300'000;
-  const auto stub = v1::ArtifactService::NewStub(
-      grpc::CreateChannel("127.0.0.1:" + std::to_string(port_), grpc::InsecureChannelCredentials()));
-  ASSERT_TRUE(upload_artifact(*stub, file, *digest, {}).ok());
-  ASSERT_EQ(artifacts_.upload_offsets.size(), 2u);
-  EXPECT_GT(artifacts_.upload_offsets[1], 0);
-  EXPECT_EQ(artifacts_.complete[digest->sha256], big);
-  ASSERT_TRUE(download_artifact(*stub, digest->sha256, folder_.path() / "back", {}).ok());
-  EXPECT_EQ(artifacts_.download_offsets, (std::vector<std::int64_t>{0, 300'000}));
-  EXPECT_EQ(std::filesystem::file_size(folder_.path() / "back"), big.size());
-}
-
-TEST_F(AgentTest, AKeptPartOfAnotherContentIsSentOnceMoreFromTheBeginning) {
-  const auto sha256 = [this](const std::string& content) {
-    const std::filesystem::path file = folder_.path() / "content";
-    std::ofstream(file) << content;
-    return digest_file(file)->sha256;
-  };
-  const std::string result(1'000, 'r');
-  artifacts_.partial[sha256(result)] = std::string(300, 'x');
-  const std::filesystem::path file = folder_.path() / "result";
-  std::ofstream(file) << result;
-  const auto digest = digest_file(file);
-  artifacts_.hash = sha256;
-  const auto stub = v1::ArtifactService::NewStub(
-      grpc::CreateChannel("127.0.0.1:" + std::to_string(port_), grpc::InsecureChannelCredentials()));
-  ASSERT_TRUE(upload_artifact(*stub, file, *digest, {}).ok());
-  EXPECT_EQ(artifacts_.upload_offsets, (std::vector<std::int64_t>{300, 0}));
-  EXPECT_EQ(artifacts_.complete[digest->sha256], result);
-  artifacts_.complete.clear();
-  artifacts_.upload_offsets.clear();
-  artifacts_.partial[digest->sha256] = "x";
-  artifacts_.hash = [](const std::string&) { return std::string("another"); };
-  EXPECT_EQ(upload_artifact(*stub, file, *digest, {}).error_code(), grpc::StatusCode::DATA_LOSS);
-  EXPECT_EQ(artifacts_.upload_offsets, (std::vector<std::int64_t>{1, 0}));
-}
-
-TEST_F(AgentTest, AMeshWithAnotherContentIsRefused) {
-  artifacts_.complete[kMeshHash] = "no mesh";
-  const auto stub = v1::ArtifactService::NewStub(
-      grpc::CreateChannel("127.0.0.1:" + std::to_string(port_), grpc::InsecureChannelCredentials()));
-  EXPECT_EQ(download_artifact(*stub, kMeshHash, folder_.path() / "back", {}).error_code(),
-            grpc::StatusCode::DATA_LOSS);
 }
 
 TEST(AgentOptions, OutOfRangeIsNamed) {

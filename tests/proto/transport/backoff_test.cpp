@@ -1,14 +1,14 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
-#include "worker/agent/backoff.h"
+// SPDX-License-Identifier: Apache-2.0
+#include "proto/transport/backoff.h"
 
 #include <gtest/gtest.h>
 
-namespace skinframe::agent {
+namespace skinframe::transport {
 namespace {
 
 using std::chrono::milliseconds;
 
-TEST(AgentBackoff, DoublesUpToItsLongestAndKeepsToItsJitter) {
+TEST(BackoffTest, DoublesUpToItsLongestAndKeepsToItsJitter) {
   Backoff backoff(milliseconds(100), milliseconds(1000), 7);
   for (const int step : {100, 200, 400, 800, 1000, 1000}) {
     const auto delay = backoff.next();
@@ -19,16 +19,10 @@ TEST(AgentBackoff, DoublesUpToItsLongestAndKeepsToItsJitter) {
   EXPECT_LE(backoff.next().count(), 100);
 }
 
-TEST(AgentBackoff, WorkersThatFailedTogetherDoNotComeBackTogether) {
+TEST(BackoffTest, CallersThatFailedTogetherDoNotComeBackTogether) {
   Backoff a(milliseconds(1000), milliseconds(1000), 1), b(milliseconds(1000), milliseconds(1000), 2);
   EXPECT_NE(a.next(), b.next());
 }
 
-TEST(AgentBackoff, AWaitEndsAtOnceWhenToldToStop) {
-  std::stop_source stop;
-  stop.request_stop();
-  EXPECT_FALSE(wait_unless_stopped(stop.get_token(), std::chrono::hours(1)));
-}
-
 }  // namespace
-}  // namespace skinframe::agent
+}  // namespace skinframe::transport

@@ -3,15 +3,14 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
+#include <istream>
 #include <memory>
 #include <string>
 #include <string_view>
 
-#include "client/call/result.h"
+namespace skinframe::transport {
 
-namespace skinframe::client {
-
+// Throws std::runtime_error without memory or with a broken OpenSSL: nothing that a caller could mend.
 class Sha256 {
  public:
   Sha256();
@@ -29,7 +28,7 @@ struct FileDigest {
   std::int64_t size_bytes = 0;
 };
 
-// kInput when the file is missing, no regular file, unreadable or empty.
-Result<FileDigest> digest_input_file(const std::filesystem::path& path);
+// From where the stream stands to its end; in.bad() when that was not reached.
+FileDigest digest_of(std::istream& in);
 
-}  // namespace skinframe::client
+}  // namespace skinframe::transport
