@@ -276,4 +276,40 @@ absl::Status write_decision(Database& database, const JobRow& row, JobRecord& af
   return write_change(database, row.ordinal, after, std::move(events));
 }
 
+struct Modified {
+  JobRecord after;  // as it is now, changed or not
+  bool changed = false;
+  bool state_changed = false;
+};
+
+// The caller's decision on the job as it stands, locked where the store locks rows.
+template <class Database>
+absl::StatusOr<Modified> modify_job(Database& database, const std::string& job_id, const Decide& decide) {
+  auto row = find_job(database, job_id, Database::kForUpdate);
+  if (!row.ok()) return row.status();
+  auto change = decide(row->record);
+  if (!change.ok()) return change.status();
+  Modified modified;
+  modified.changed = change->has_value();
+  if (!modified.changed) {
+    modified.after = std::move(row->record);
+    return modified;
+  }
+  modified.after = std::move((*change)->record);
+  modified.state_changed = modified.after.job.state() != row->record.job.state();
+  absl::Status status = write_decision(database, *row, modified.after, std::move((*change)->events));
+  if (!status.ok()) return status;
+  return modified;
+}
+
+// With its labels and events, when the caller permits it.
+template <class Database>
+absl::Status erase_job(Database& database, const std::string& job_id, const Permit& permit) {
+  const auto row = find_job(database, job_id, Database::kForUpdate);
+  if (!row.ok()) return row.status();
+  if (absl::Status status = permit(row->record); !status.ok()) return status;
+  typename Database::Statement erase(database, "DELETE FROM jobs WHERE ordinal = ?");
+  return erase.bind(row->ordinal).run();
+}
+
 }  // namespace skinframe::server

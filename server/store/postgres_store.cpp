@@ -49,26 +49,15 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
   }
 
   absl::StatusOr<JobRecord> modify(const std::string& job_id, const Decide& decide) override {
-    JobRecord after;
-    bool changed = false;
-    bool state_changed = false;
+    Modified modified;
     const absl::Status status = pool_.transact([&](PostgresSession& session) -> absl::Status {
-      auto row = find_job(session, job_id, PostgresSession::kForUpdate);
-      if (!row.ok()) return row.status();
-      auto change = decide(row->record);
-      if (!change.ok()) return change.status();
-      changed = change->has_value();
-      if (!changed) {
-        after = std::move(row->record);
-        return absl::OkStatus();
-      }
-      after = std::move((*change)->record);
-      state_changed = after.job.state() != row->record.job.state();
-      return write_decision(session, *row, after, std::move((*change)->events));
+      auto made = modify_job(session, job_id, decide);
+      if (made.ok()) modified = *std::move(made);
+      return made.status();
     });
     if (!status.ok()) return status;
-    if (changed) committed(after, state_changed);
-    return after;
+    if (modified.changed) committed(modified.after, modified.state_changed);
+    return modified.after;
   }
 
   absl::StatusOr<std::optional<JobRecord>> lease_next(Time now, const OrderTenants& order,
@@ -88,13 +77,8 @@ class PostgresStore final : public SqlReads<PostgresSession, PostgresPool> {
   }
 
   absl::Status remove(const std::string& job_id, const Permit& permit) override {
-    const absl::Status status = pool_.transact([&](PostgresSession& session) -> absl::Status {
-      const auto row = find_job(session, job_id, PostgresSession::kForUpdate);
-      if (!row.ok()) return row.status();
-      if (absl::Status allowed = permit(row->record); !allowed.ok()) return allowed;
-      PostgresStatement erase(session, "DELETE FROM jobs WHERE ordinal = ?");  // labels and events go with it
-      return erase.bind(row->ordinal).run();
-    });
+    const absl::Status status =
+        pool_.transact([&](PostgresSession& session) { return erase_job(session, job_id, permit); });
     if (!status.ok()) return status;
     if (listener_ != nullptr) listener_->removed(job_id);
     herald_.tell({own_, News::Kind::kRemoved, job_id});

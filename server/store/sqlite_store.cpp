@@ -35,28 +35,17 @@ class SqliteStore final : public SqlReads<SqliteDatabase, SqliteReaders> {
   }
 
   absl::StatusOr<JobRecord> modify(const std::string& job_id, const Decide& decide) override {
-    JobRecord after;
-    bool changed = false;
-    bool state_changed = false;
+    Modified modified;
     const auto work = [&](SqliteDatabase& database) -> absl::Status {
-      auto row = find_job(database, job_id);
-      if (!row.ok()) return row.status();
-      auto change = decide(row->record);
-      if (!change.ok()) return change.status();
-      changed = change->has_value();
-      if (!changed) {
-        after = std::move(row->record);
-        return absl::OkStatus();
-      }
-      after = std::move((*change)->record);
-      state_changed = after.job.state() != row->record.job.state();
-      return write_decision(database, *row, after, std::move((*change)->events));
+      auto made = modify_job(database, job_id, decide);
+      if (made.ok()) modified = *std::move(made);
+      return made.status();
     };
     const auto tell = [&] {
-      if (changed) committed(after, state_changed);
+      if (modified.changed) committed(modified.after, modified.state_changed);
     };
     if (absl::Status status = writer_.write(work, tell); !status.ok()) return status;
-    return after;
+    return modified.after;
   }
 
   absl::StatusOr<std::optional<JobRecord>> lease_next(Time now, const OrderTenants& order,
@@ -83,13 +72,7 @@ class SqliteStore final : public SqlReads<SqliteDatabase, SqliteReaders> {
   }
 
   absl::Status remove(const std::string& job_id, const Permit& permit) override {
-    const auto work = [&](SqliteDatabase& database) -> absl::Status {
-      const auto row = find_job(database, job_id);
-      if (!row.ok()) return row.status();
-      if (absl::Status status = permit(row->record); !status.ok()) return status;
-      SqliteStatement erase(database, "DELETE FROM jobs WHERE ordinal = ?");  // labels and events go with it
-      return erase.bind(row->ordinal).run();
-    };
+    const auto work = [&](SqliteDatabase& database) { return erase_job(database, job_id, permit); };
     const auto tell = [&] {
       if (listener_ != nullptr) listener_->removed(job_id);
     };

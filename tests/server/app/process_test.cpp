@@ -13,10 +13,10 @@
 #include <set>
 #include <thread>
 
-#include "server/jobs/job_id.h"
 #include "skinframe/v1/artifact.grpc.pb.h"
 #include "skinframe/v1/job.grpc.pb.h"
 #include "skinframe/v1/worker.grpc.pb.h"
+#include "tests/server/app/put_artifact.h"
 #include "tests/server/app/server_process.h"
 #include "tests/server/fixture/temporary_folder.h"
 
@@ -36,26 +36,6 @@ struct Client {
   std::unique_ptr<v1::WorkerService::Stub> workers;
 };
 
-void set_deadline(grpc::ClientContext& context) {
-  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
-}
-
-std::string put(Client& client, const std::string& content) {
-  grpc::ClientContext context;
-  set_deadline(context);
-  v1::UploadArtifactResponse response;
-  const auto writer = client.artifacts->Upload(&context, &response);
-  v1::UploadArtifactRequest message;
-  message.mutable_header()->set_sha256(sha256_hex(content));
-  message.mutable_header()->set_size_bytes(static_cast<std::int64_t>(content.size()));
-  writer->Write(message);
-  message.set_chunk(content);
-  writer->Write(message);
-  writer->WritesDone();
-  EXPECT_TRUE(writer->Finish().ok());
-  return sha256_hex(content);
-}
-
 v1::SubmitJobRequest job_of(const std::string& mesh, const std::string& request_id) {
   v1::SubmitJobRequest request;
   request.set_request_id(request_id);
@@ -66,6 +46,16 @@ v1::SubmitJobRequest job_of(const std::string& mesh, const std::string& request_
 
 class ServerProcessTest : public testing::Test {
  protected:
+  // A second program that is to listen there over that folder ends with the code and one line that has the
+  // words.
+  void expect_refused(const std::string& listen, const char* data, int expected, const std::string& words) {
+    const auto [code, text] =
+        ServerProcess::run({"--listen", listen, "--data", (folder_.path() / data).string()}, folder_.path());
+    EXPECT_EQ(code, expected);
+    EXPECT_NE(text.find(words), std::string::npos) << text;
+    EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  }
+
   TemporaryFolder folder_;
   ServerProcess process_{folder_.path()};
 };
@@ -77,7 +67,7 @@ TEST_F(ServerProcessTest, NothingAcknowledgedIsMissingAfterAKill) {
   std::mutex mutex;
   {
     Client client(address);
-    const std::string mesh = put(client, "a mesh");
+    const std::string mesh = put_artifact(*client.artifacts, "a mesh");
     std::vector<std::thread> submitters;
     for (int t = 0; t < 4; ++t) {
       submitters.emplace_back([&, t] {
@@ -123,7 +113,10 @@ TEST_F(ServerProcessTest, WatchAndWorkerGoOnAfterAKillAsIfNothingHadHappened) {
     Client client(address);
     v1::SubmitJobResponse submitted;
     grpc::ClientContext submit_context;
-    ASSERT_TRUE(client.jobs->SubmitJob(&submit_context, job_of(put(client, "a mesh"), ""), &submitted).ok());
+    ASSERT_TRUE(
+        client.jobs
+            ->SubmitJob(&submit_context, job_of(put_artifact(*client.artifacts, "a mesh"), ""), &submitted)
+            .ok());
     v1::LeaseRequest request;
     request.set_worker_id("worker");
     request.set_instance_id("instance");
@@ -180,7 +173,10 @@ TEST_F(ServerProcessTest, SigtermEndsItCleanlyAlsoWithOpenWatches) {
   Client client(address);
   v1::SubmitJobResponse submitted;
   grpc::ClientContext submit_context;
-  ASSERT_TRUE(client.jobs->SubmitJob(&submit_context, job_of(put(client, "a mesh"), ""), &submitted).ok());
+  ASSERT_TRUE(
+      client.jobs
+          ->SubmitJob(&submit_context, job_of(put_artifact(*client.artifacts, "a mesh"), ""), &submitted)
+          .ok());
   grpc::ClientContext watch_context;
   set_deadline(watch_context);
   v1::WatchJobRequest watch;
@@ -195,29 +191,17 @@ TEST_F(ServerProcessTest, SigtermEndsItCleanlyAlsoWithOpenWatches) {
 
 TEST_F(ServerProcessTest, ASecondServerOverTheSameDataIsRefusedInOneSentence) {
   ASSERT_FALSE(process_.start().empty());
-  const auto [code, text] = ServerProcess::run(
-      {"--listen", "127.0.0.1:0", "--data", (folder_.path() / "data").string()}, folder_.path());
-  EXPECT_EQ(code, 1);
-  EXPECT_NE(text.find("another server is using the data folder"), std::string::npos) << text;
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  expect_refused("127.0.0.1:0", "data", 1, "another server is using the data folder");
 }
 
 TEST_F(ServerProcessTest, ATakenPortIsRefusedInOneSentence) {
   const std::string address = process_.start();
   ASSERT_FALSE(address.empty());
-  const auto [code, text] = ServerProcess::run(
-      {"--listen", address, "--data", (folder_.path() / "other").string()}, folder_.path());
-  EXPECT_EQ(code, 1);
-  EXPECT_NE(text.find("cannot listen on " + address), std::string::npos) << text;
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  expect_refused(address, "other", 1, "cannot listen on " + address);
 }
 
 TEST_F(ServerProcessTest, TheNetworkWithoutTlsIsRefusedInOneSentence) {
-  const auto [code, text] = ServerProcess::run(
-      {"--listen", "0.0.0.0:0", "--data", (folder_.path() / "data").string()}, folder_.path());
-  EXPECT_EQ(code, 2);
-  EXPECT_NE(text.find("--allow-plaintext"), std::string::npos) << text;
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
+  expect_refused("0.0.0.0:0", "data", 2, "--allow-plaintext");
 }
 
 TEST_F(ServerProcessTest, ItsOwnHealthCheckTellsAServingServerFromNone) {

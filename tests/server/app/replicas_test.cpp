@@ -8,20 +8,16 @@
 #include <thread>
 #include <vector>
 
-#include "server/jobs/job_id.h"
 #include "skinframe/v1/artifact.grpc.pb.h"
 #include "skinframe/v1/job.grpc.pb.h"
 #include "skinframe/v1/worker.grpc.pb.h"
+#include "tests/server/app/put_artifact.h"
 #include "tests/server/app/server_process.h"
 #include "tests/server/fixture/postgres_server.h"
 #include "tests/server/fixture/temporary_folder.h"
 
 namespace skinframe::server {
 namespace {
-
-void set_deadline(grpc::ClientContext& context) {
-  context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(30));
-}
 
 struct Replica {
   Replica(const std::filesystem::path& folder, const std::string& database,
@@ -39,21 +35,7 @@ struct Replica {
     workers = v1::WorkerService::NewStub(channel);
   }
 
-  std::string put(const std::string& content) {
-    grpc::ClientContext context;
-    set_deadline(context);
-    v1::UploadArtifactResponse response;
-    const auto writer = artifacts->Upload(&context, &response);
-    v1::UploadArtifactRequest message;
-    message.mutable_header()->set_sha256(sha256_hex(content));
-    message.mutable_header()->set_size_bytes(static_cast<std::int64_t>(content.size()));
-    writer->Write(message);
-    message.set_chunk(content);
-    writer->Write(message);
-    writer->WritesDone();
-    EXPECT_TRUE(writer->Finish().ok());
-    return sha256_hex(content);
-  }
+  std::string put(const std::string& content) { return put_artifact(*artifacts, content); }
   std::string submit(const std::string& mesh) {
     grpc::ClientContext context;
     set_deadline(context);

@@ -167,31 +167,34 @@ TEST(TopOpt, RemovalTheCallerDoesNotAcceptIsDropped) {
   expect_sound(problem, r);
 }
 
-// A bent chain pulled straight: the middle node moves onto the line, and the struts become the bar F L /
-// (gamma epsilon).
-TEST(GeoOpt, BentChainIsStraightened) {
+// Two struts in a bend, pulled at the free end; the middle node may move.
+FrameProblem bent_chain() {
   FrameProblem problem = testing::bare_problem({{0, 0, 0}, {50, 12, 0}, {100, 0, 0}}, {{0, 1}, {1, 2}});
   problem.fixed[0] = {true, true, true};
   problem.fixed[2] = {false, true, true};
   problem.free_nodes = {false, true, false};
   problem.displacement_limit_mm = 0.05;
   problem.load_cases = {testing::load_at(problem, 2, {8, 0, 0})};
+  return problem;
+}
+
+OptimizeOptions geometry_only() {
   OptimizeOptions options;
   options.relaxed = options.topology = false;
-  const OptimizeResult r = optimised(problem, options);
+  return options;
+}
+
+// A bent chain pulled straight: the middle node moves onto the line, and the struts become the bar F L /
+// (gamma epsilon).
+TEST(GeoOpt, BentChainIsStraightened) {
+  const OptimizeResult r = optimised(bent_chain(), geometry_only());
   EXPECT_NEAR(r.problem.frame.nodes_mm[1].y(), 0, 0.2);
   EXPECT_NEAR(r.geometry.volume_mm3, 100 * 8 * 100 / (1586 * 0.05), 1.0);
 }
 
 TEST(GeoOpt, NodeStaysInItsRegion) {
-  FrameProblem problem = testing::bare_problem({{0, 0, 0}, {50, 12, 0}, {100, 0, 0}}, {{0, 1}, {1, 2}});
-  problem.fixed[0] = {true, true, true};
-  problem.fixed[2] = {false, true, true};
-  problem.free_nodes = {false, true, false};
-  problem.displacement_limit_mm = 0.05;
-  problem.load_cases = {testing::load_at(problem, 2, {8, 0, 0})};
-  OptimizeOptions options;
-  options.relaxed = options.topology = false;
+  const FrameProblem problem = bent_chain();
+  OptimizeOptions options = geometry_only();
   options.convex_regions = [](const Frame& frame, const std::vector<double>&) {
     NodeRegions regions(frame.nodes_mm.size());
     regions[1] = {{-Vector3d::UnitY(), -7}};  // y >= 7
