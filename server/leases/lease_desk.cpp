@@ -50,7 +50,7 @@ void LeaseDesk::withdraw(Ticket ticket) {
 
 std::size_t LeaseDesk::waiting() {
   const std::lock_guard lock(mutex_);
-  return waiters_.size();
+  return waiters_.size() + (in_hand_ != 0 ? 1 : 0);
 }
 
 void LeaseDesk::job_queued() {

@@ -41,7 +41,7 @@ class LeaseDesk final : public Duty {
   // The answer with this job came too late: the worker had hung up. Queues the job again, if it is still its.
   void undelivered(const JobRecord& leased);
 
-  std::size_t waiting();  // workers
+  std::size_t waiting();  // workers, with the one that is being looked for
 
   // Quick, and calls no store: for the store's listener.
   void job_queued();
