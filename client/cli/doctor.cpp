@@ -114,7 +114,7 @@ ExitCode report(const std::vector<Examined>& all, bool as_json, ExitCode code) {
       list.push_back({{"what", one.what},
                       {"finding", one.finding == Finding::kWrong ? "wrong" : word(one.finding)},
                       {"says", one.says}});
-    fmt::print("{}\n", to_text(Json{{"well", !wrong}, {"examined", std::move(list)}}));
+    print_json({{"well", !wrong}, {"examined", std::move(list)}});
   } else {
     for (const Examined& one : all) fmt::print("{:<6}{:<12} {}\n", word(one.finding), one.what, one_line(one.says));
   }

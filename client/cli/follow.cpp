@@ -80,7 +80,7 @@ Done watch_with_display(const Connection& connection, Interrupts& interrupts, co
 
 void report(const v1::Job& job, bool json) {
   if (json) {
-    fmt::print("{}\n", to_text(to_json(job)));
+    print_json(to_json(job));
   } else {
     fmt::print("{}", result_table(job));
   }

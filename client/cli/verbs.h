@@ -9,6 +9,7 @@
 
 #include "client/call/connect.h"
 #include "client/cli/exit_code.h"
+#include "client/cli/interrupts.h"
 #include "client/cli/job_arguments.h"
 
 namespace skinframe::client {
@@ -36,15 +37,20 @@ struct ListArguments {
   int limit = 50;
 };
 
+// The server that the arguments name, by a connection whose calls end with an interrupt.
+Result<Connection> open(const GlobalArguments& global, const Interrupts& interrupts);
+
+// follow_verbs.cpp: they stay with their job.
 ExitCode run(const GlobalArguments& global, const RunArguments& arguments);
 ExitCode submit(const GlobalArguments& global, const SubmitArguments& arguments);
 ExitCode watch(const GlobalArguments& global, const std::string& job_id, std::int64_t after_sequence);
+// job_verbs.cpp: one question each.
 ExitCode get(const GlobalArguments& global, const std::string& job_id);
 ExitCode list(const GlobalArguments& global, const ListArguments& arguments);
 ExitCode cancel(const GlobalArguments& global, const std::string& job_id);
 ExitCode remove(const GlobalArguments& global, const std::string& job_id);
 ExitCode download(const GlobalArguments& global, const std::string& job_id, const std::filesystem::path& out);
-// id empty: all of them, in a list.
+// catalog_verbs.cpp. id empty: all of them, in a list.
 ExitCode printers(const GlobalArguments& global, const std::string& id);
 ExitCode materials(const GlobalArguments& global, const std::string& id);
 

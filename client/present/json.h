@@ -14,4 +14,6 @@ namespace skinframe::client {
 nlohmann::ordered_json to_json(const google::protobuf::Message& message);
 std::string to_text(const nlohmann::ordered_json& json, int indent = 2);  // invalid UTF-8 is replaced
 
+void print_json(const nlohmann::ordered_json& json);  // on stdout
+
 }  // namespace skinframe::client

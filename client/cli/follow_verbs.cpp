@@ -4,31 +4,23 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 
 #include "client/cli/embedded_farm.h"
 #include "client/cli/follow.h"
 #include "client/cli/interrupts.h"
-#include "client/cli/load_option.h"
 #include "client/jobs/client.h"
 #include "client/jobs/watch.h"
 #include "client/present/event_line.h"
 #include "client/present/job_table.h"
 #include "client/present/json.h"
-#include "client/present/profile_table.h"
 #include "client/present/progress_display.h"
 #include "client/present/words.h"
-#include "client/transfer/download.h"
 #include "client/transfer/input_kind.h"
 #include "client/transfer/upload.h"
 
 namespace skinframe::client {
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-void print_json(const Json& json) { fmt::print("{}\n", to_text(json)); }
 
 // Upload and submission: all that happens before there is a job.
 Result<v1::SubmitJobResponse> upload_and_submit(const Connection& connection, const JobArguments& job,
@@ -106,30 +98,13 @@ class TerminalWatch {
   std::string stage_;
 };
 
-template <class Profiles>
-ExitCode show_profile(const char* kind, const Profiles& profiles, const std::string& id, bool json) {
-  const auto at = std::find_if(profiles.begin(), profiles.end(), [&](const auto& p) { return p.id() == id; });
-  if (at == profiles.end()) {
-    std::string known;
-    for (const auto& profile : profiles) known += (known.empty() ? "" : ", ") + one_line(profile.id());
-    return tell(
-        {FailureKind::kUsage, fmt::format("unknown {} \"{}\"; known: {}", kind, one_line(id), known)});
-  }
-  if (json) {
-    print_json(profile_file(*at));
-  } else {
-    fmt::print("{}", profile_sheet(*at));
-  }
-  return kExitSuccess;
-}
+}  // namespace
 
 Result<Connection> open(const GlobalArguments& global, const Interrupts& interrupts) {
   auto connection = connect(global.server);
   if (connection) connection->stop = interrupts.stop_source().get_token();
   return connection;
 }
-
-}  // namespace
 
 ExitCode run(const GlobalArguments& global, const RunArguments& arguments) {
   const auto request = to_request(arguments.job);
@@ -207,134 +182,6 @@ ExitCode watch(const GlobalArguments& global, const std::string& job_id, std::in
     fmt::print(stderr, "skinframe: {}", end_report(*job));
   }
   return exit_code(job->state(), job->reason());
-}
-
-ExitCode get(const GlobalArguments& global, const std::string& job_id) {
-  const auto connection = connect(global.server);
-  if (!connection) return tell(connection.failure());
-  const auto job = get_job(*connection, job_id);
-  if (!job) return tell(job.failure());
-  if (global.json) {
-    print_json(to_json(*job));
-  } else {
-    fmt::print("{}", job_description(*job));
-  }
-  return kExitSuccess;
-}
-
-ExitCode list(const GlobalArguments& global, const ListArguments& arguments) {
-  ListFilter filter;
-  filter.limit = arguments.limit;
-  for (const std::string& word : arguments.states) {
-    const auto state = state_from_word(word);
-    if (!state) {
-      return tell(
-          {FailureKind::kUsage,
-           fmt::format("--state {}: is none of queued, running, succeeded, failed, cancelled", word)});
-    }
-    filter.states.push_back(*state);
-  }
-  for (const std::string& text : arguments.labels) {
-    const auto label = parse_label(text);
-    if (!label) return tell(label.failure());
-    filter.labels[label->first] = label->second;
-  }
-  const auto connection = connect(global.server);
-  if (!connection) return tell(connection.failure());
-  const auto jobs = list_jobs(*connection, filter);
-  if (!jobs) return tell(jobs.failure());
-  if (global.json) {
-    Json all = Json::array();
-    for (const v1::Job& job : *jobs) all.push_back(to_json(job));
-    print_json({{"jobs", std::move(all)}});
-  } else {
-    fmt::print("{}", job_list(*jobs));
-  }
-  return kExitSuccess;
-}
-
-ExitCode cancel(const GlobalArguments& global, const std::string& job_id) {
-  const auto connection = connect(global.server);
-  if (!connection) return tell(connection.failure());
-  const auto job = cancel_job(*connection, job_id);
-  if (!job) return tell(job.failure());
-  if (global.json) {
-    print_json(to_json(*job));
-  } else if (is_final(job->state())) {
-    fmt::print("{} {}\n", one_line(job_id), state_word(job->state()));
-  } else {
-    fmt::print("{} {}, its worker is asked to stop\n", one_line(job_id), state_word(job->state()));
-  }
-  return kExitSuccess;
-}
-
-ExitCode remove(const GlobalArguments& global, const std::string& job_id) {
-  const auto connection = connect(global.server);
-  if (!connection) return tell(connection.failure());
-  const auto deleted = delete_job(*connection, job_id);
-  if (!deleted) return tell(deleted.failure());
-  if (global.json) {
-    print_json({{"job_id", job_id}, {"deleted", true}});
-  } else {
-    fmt::print("{} deleted\n", one_line(job_id));
-  }
-  return kExitSuccess;
-}
-
-ExitCode download(const GlobalArguments& global, const std::string& job_id,
-                  const std::filesystem::path& out) {
-  Interrupts interrupts;
-  const auto connection = open(global, interrupts);
-  if (!connection) return tell(connection.failure());
-  const auto job = get_job(*connection, job_id);
-  if (!job) return tell(job.failure());
-  if (!is_final(job->state())) {
-    return tell({FailureKind::kUsage,
-                 fmt::format("job {} is {}; its files are there when it has ended (skinframe watch "
-                             "{})",
-                             one_line(job_id), state_word(job->state()), one_line(job_id))});
-  }
-  if (job->files_size() == 0) {
-    fmt::print(stderr, "skinframe: job {} left no files: {}", one_line(job_id), end_report(*job));
-    return exit_code(job->state(), job->reason());
-  }
-  const auto files = download_results(*connection, *job, out);
-  if (!files) return tell(files.failure());
-  Json paths = Json::array();
-  for (const auto& path : *files) {
-    paths.push_back(path.string());
-    if (!global.json) fmt::print("{}\n", path.string());
-  }
-  if (global.json) print_json({{"job_id", job_id}, {"files", std::move(paths)}});
-  return kExitSuccess;
-}
-
-ExitCode printers(const GlobalArguments& global, const std::string& id) {
-  const auto connection = connect(global.server);
-  if (!connection) return tell(connection.failure());
-  const auto all = list_printers(*connection);
-  if (!all) return tell(all.failure());
-  if (!id.empty()) return show_profile("printer", all->printers(), id, global.json);
-  if (global.json) {
-    print_json(to_json(*all));
-  } else {
-    fmt::print("{}", printer_list(*all));
-  }
-  return kExitSuccess;
-}
-
-ExitCode materials(const GlobalArguments& global, const std::string& id) {
-  const auto connection = connect(global.server);
-  if (!connection) return tell(connection.failure());
-  const auto all = list_materials(*connection);
-  if (!all) return tell(all.failure());
-  if (!id.empty()) return show_profile("material", all->materials(), id, global.json);
-  if (global.json) {
-    print_json(to_json(*all));
-  } else {
-    fmt::print("{}", material_list(*all));
-  }
-  return kExitSuccess;
 }
 
 }  // namespace skinframe::client
