@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A number and its derivatives in N variables, so that a formula written once gives exact derivatives too
 // (forward differentiation). Nested, Jet<Jet<double, 1>, 1>, it carries the second derivative in one
-// variable.
+// variable; that is why it is not Ceres's Jet, whose constants are not made of a number when it is nested.
 //
 // Example: auto r = variable<2>(3.0, 0);  (r * r).d[0] == 6
 #pragma once
