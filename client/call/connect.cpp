@@ -25,6 +25,8 @@ Result<Connection> connect(const ConnectOptions& options) {
   connection.address = options.address;
   connection.token = options.token;
   connection.channel = *std::move(channel);
+  connection.own_clock = connecting_clock(connection.channel);
+  connection.clock = connection.own_clock.get();
   return connection;
 }
 

@@ -31,6 +31,7 @@ struct Connection {
   std::string address;
   std::string token;  // sent with each call
   Clock* clock = &system_clock();
+  std::shared_ptr<Clock> own_clock;  // what `clock` is after connect(); null where a caller brings another
   std::stop_token stop;
 
   Connection with_stop(std::stop_token when) const {

@@ -111,7 +111,7 @@ class Slot {
     while (!no_more.stop_requested()) {
       v1::LeaseResponse response;
       const auto asked = steady_clock::now();
-      const grpc::Status status = lease(no_more.get_token(), response);
+      const grpc::Status status = lease(no_more.get_token(), !answered, response);
       if (status.ok() && response.has_assignment()) {
         backoff.reset();
         agent::run_assignment(options_, folder_, {*worker_, *artifacts_}, response.assignment(), stop);
@@ -130,8 +130,11 @@ class Slot {
   }
 
  private:
-  grpc::Status lease(const std::stop_token& stop, v1::LeaseResponse& response) {
+  // A channel gets on with connecting only while a call waits for it: calls that fail at once would leave a
+  // TLS handshake unfinished for ever.
+  grpc::Status lease(const std::stop_token& stop, bool wait_for_server, v1::LeaseResponse& response) {
     grpc::ClientContext context;
+    context.set_wait_for_ready(wait_for_server);
     context.set_deadline(std::chrono::system_clock::now() + kLeaseWait + kLeaseGrace);
     const std::stop_callback cancel(stop, [&] { context.TryCancel(); });
     return worker_->Lease(&context, request_, &response);

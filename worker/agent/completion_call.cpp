@@ -28,8 +28,9 @@ void send_completion(v1::WorkerService::StubInterface& stub, const v1::CompleteR
                      int attempt, Heartbeater& heartbeater, const std::stop_token& worker_stop) {
   transport::Backoff backoff(std::chrono::milliseconds(100), std::chrono::milliseconds(1000));
   const auto patience = steady_clock::now() + kCompletionPatience;
-  while (true) {
+  for (bool first = true;; first = false) {
     grpc::ClientContext context;
+    context.set_wait_for_ready(!first);  // the channel connects only while a call waits for it
     context.set_deadline(std::chrono::system_clock::now() + std::chrono::seconds(5));
     v1::CompleteResponse response;
     const grpc::Status status = stub.Complete(&context, completion, &response);

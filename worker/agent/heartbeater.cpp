@@ -101,6 +101,7 @@ void Heartbeater::beat() {
   }
   grpc::ClientContext context;
   context.set_deadline(system_clock::now() + kCallDeadline);
+  context.set_wait_for_ready(!server_answers_);  // the channel connects only while a call waits for it
   v1::HeartbeatResponse response;
   const auto asked = steady_clock::now();
   const grpc::Status status = stub_.Heartbeat(&context, request, &response);

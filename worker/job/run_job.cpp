@@ -12,6 +12,7 @@
 #include "worker/job/run_frame_job.h"
 #include "worker/pipeline/pipeline.h"
 #include "worker/pipeline/write_json.h"
+#include "worker/run/reserve_blas.h"
 #include "worker/run/stop_signals.h"
 
 namespace skinframe {
@@ -50,6 +51,11 @@ json work(const JobFile& file, const std::filesystem::path& work_dir, std::stop_
   observer.checkpoints = &checkpoints;
   observer.progress = [&](const PipelineProgress& progress) { events.progress(progress); };
   observer.printer_ended = [&](const PrinterOutcome& outcome) { events.printer_ended(outcome); };
+  if (!reserve_blas_buffers(file.threads)) {
+    return failed_outcome(
+        Reason::kOutOfMemory,
+        "the job may take less memory than the solver needs for itself (--memory-limit-mb)");
+  }
   try {
     if (file.frame_problem) return run_frame_job(file, out_dir, events, &checkpoints, context);
     auto outcomes = run_pipeline(file.request, out_dir, observer, context);

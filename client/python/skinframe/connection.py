@@ -66,13 +66,25 @@ class Connection:
     """A channel with its address, its token and its patience. May be used from several threads."""
 
     def __init__(self, channel: grpc.Channel, address: str, token: str, retries: Retries,
-                 clock: Callable[[], float] = time.monotonic, wait: Callable[[float], None] = time.sleep):
+                 clock: Callable[[], float] = time.monotonic, wait: Callable[[float], None] | None = None):
         self.channel = channel
         self.address = address
         self.retries = retries
         self.metadata = (("authorization", f"Bearer {token}"),) if token else ()
         self.clock = clock
-        self.wait = wait
+        self.wait = wait or self._wait_connecting
+
+    def _wait_connecting(self, seconds: float) -> None:
+        """gRPC gets on with connecting only while somebody waits for the channel: calls that fail at once, with sleep
+        between them, would leave a TLS handshake unfinished for ever."""
+        def watcher(_: grpc.ChannelConnectivity) -> None:
+            pass
+
+        self.channel.subscribe(watcher, try_to_connect=True)
+        try:
+            time.sleep(seconds)
+        finally:
+            self.channel.unsubscribe(watcher)
 
     def call(self, method: Callable[..., Answer], request: object) -> Answer:
         """One unary call, repeated while that may help: on UNAVAILABLE, and on RESOURCE_EXHAUSTED
