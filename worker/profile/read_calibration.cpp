@@ -46,7 +46,7 @@ Result<std::vector<CalibrationPoint>> read_calibration(const std::filesystem::pa
   bool header = false;
   int line_number = 0;
   const auto wrong = [&](const std::string& what) {
-    return invalid_input(fmt::format("{}:{}: {}", file.string(), line_number, what));
+    return invalid_input(fmt::format("{}:{}: {}", file.string(), std::max(1, line_number), what));
   };
   for (std::size_t from = 0; from < text.size();) {
     const auto to = std::min(text.find('\n', from), text.size());

@@ -130,7 +130,7 @@ TEST_F(ReadCalibration, StrutsCommentsAndWhatSpreadsheetsAdd) {
 
 TEST_F(ReadCalibration, WhatIsWrongIsSaidWithFileAndLine) {
   const std::string h = "angle_deg,length_mm\n";
-  expect_refused("", "points.csv:0: nothing is in it");
+  expect_refused("", "points.csv:1: nothing is in it");
   expect_refused("45,30\n", "points.csv:1: the first line must be `angle_deg,length_mm`");
   expect_refused(h + "45,30\n45;20\n", "points.csv:3: not two columns");
   expect_refused(h + "45,30,1\n", "points.csv:2: not two columns");
