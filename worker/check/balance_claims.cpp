@@ -74,6 +74,12 @@ bool agrees(const std::optional<double>& reported_mm, double measured_mm) {
 
 }  // namespace
 
+double standing_margin_mm(const TriangleMesh& outer_mesh) {
+  return margin_mm(
+      convex_hull(contact_points(outer_mesh, bounding_box(outer_mesh).min.z() + kContactToleranceMm)),
+      volume_centroid(outer_mesh).head<2>());
+}
+
 Eigen::Vector3d nominal_centre_of_gravity_mm(const ExportedFrame& frame) {
   Eigen::Vector3d moment = frame.skin_mass_weight_n * frame.skin_centroid_mm;
   double weight = frame.skin_mass_weight_n;
@@ -101,9 +107,8 @@ void claim_balance(const ExportedPrinter& result, const TriangleMesh& outer_mesh
   const std::string measured = fmt::format(
       "centre of gravity ({:.2f}, {:.2f}) mm is {:.3f} mm inside the base contact (reported {}); of the "
       "printed mesh {:.3f} mm (reported {}); of the solid {:.3f} mm",
-      nominal.x(), nominal.y(), nominal_margin,
-      reported(result.balance_margin_mm), printed_margin, reported(result.printed_balance_margin_mm),
-      solid_margin);
+      nominal.x(), nominal.y(), nominal_margin, reported(result.balance_margin_mm), printed_margin,
+      reported(result.printed_balance_margin_mm), solid_margin);
   if (result.balance == "holds") {
     verdict->claims.push_back({"balance",
                                nominal_margin >= -1e-6 && printed_margin >= 0 &&

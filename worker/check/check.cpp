@@ -11,7 +11,7 @@
 namespace skinframe::check {
 namespace {
 
-Verdict judge(const ExportedPrinter& result) {
+Verdict judge(const ExportedPrinter& result, const std::optional<ExportedOrientation>& orientation) {
   Verdict verdict{result.printer, {}, {}};
   if (!result.solid() && (result.frame.struts.empty() || result.frame.nodes_mm.empty())) {
     verdict.claims.push_back({"frame", false, "frame.json has no struts"});
@@ -47,6 +47,9 @@ Verdict judge(const ExportedPrinter& result) {
   if (result.supports) {
     claim_supports(result, outer, &verdict);
     claim_overhang(result, outer_mesh, outer, &verdict);
+    claim_layers(result, &verdict);
+    if (orientation && orientation->printer == result.printer)
+      claim_orientation(*orientation, result, outer_mesh, &verdict);
   }
   claim_mechanics(result, &verdict);
   claim_bounds(result, &verdict);
@@ -73,7 +76,8 @@ Result<std::vector<Verdict>> check_directory(const std::filesystem::path& direct
   if (!exported) return exported.error();
   std::vector<Verdict> verdicts;
   try {
-    for (const ExportedPrinter& result : exported->printers) verdicts.push_back(judge(result));
+    for (const ExportedPrinter& result : exported->printers)
+      verdicts.push_back(judge(result, exported->orientation));
     if (exported->solution) verdicts.push_back(judge_solution(*exported->solution));
   } catch (const std::exception& error) {  // CGAL's preconditions on a surface that is none
     return invalid_input(

@@ -73,6 +73,18 @@ double printable_mm(const std::vector<std::pair<double, double>>& curve, double 
 // No more skin hangs too far from what holds it than is reported.
 void claim_overhang(const ExportedPrinter& result, const TriangleMesh& outer_mesh, const Surface& outer,
                     Verdict* verdict);
+// Skin, struts, supports and those outside, sliced from the exported meshes: every connected part of a layer
+// touches material of the layer below within the self-supporting angle. The base plane holds what lies within
+// its reach.
+void claim_layers(const ExportedPrinter& result, Verdict* verdict);
+
+// --orient best: the estimate of added strut volume (support/orient_body.h) of the chosen attitude and of its
+// runner-up, computed anew from M's triangles, are as reported, and the chosen one needs no more; it stands by
+// the margin that is reported.
+void claim_orientation(const ExportedOrientation& orientation, const ExportedPrinter& result,
+                       const TriangleMesh& outer_mesh, Verdict* verdict);
+// Of a body's centroid inside the hull of its base contact; negative outside.
+double standing_margin_mm(const TriangleMesh& outer_mesh);
 
 // Under gravity alone, one a node; empty where the stiffness is singular.
 std::vector<Eigen::Vector3d> own_weight_displacements_mm(const ExportedFrame& frame);

@@ -7,6 +7,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "worker/check/exported_orientation.h"
 #include "worker/check/exported_supports.h"
 #include "worker/mesh/read_mesh.h"
 
@@ -289,6 +290,7 @@ Result<Exported> read_exported(const std::filesystem::path& directory, RunContex
   auto report = read_json(report_path);
   if (!report) return report.error();
   std::vector<ExportedPrinter> printers;
+  std::optional<ExportedOrientation> orientation;
   std::filesystem::path reading = report_path;
   try {
     if (report->contains("frame")) {
@@ -299,8 +301,9 @@ Result<Exported> read_exported(const std::filesystem::path& directory, RunContex
       solution.frame = parse_frame(*frame);
       solution.certificate = parse_proof(*frame, "certificate", solution.frame);
       if (frame->contains("given")) read_given(frame->at("given"), *frame, &solution);
-      return Exported{{}, std::move(solution)};
+      return Exported{{}, std::nullopt, std::move(solution)};
     }
+    orientation = parse_orientation(report->at("mesh"));
     for (const json& item : report->at("printers")) {
       reading = report_path;
       // A printer that was refused before it had a frame (does not fit, for example) claims nothing.
@@ -335,7 +338,7 @@ Result<Exported> read_exported(const std::filesystem::path& directory, RunContex
   }
   if (printers.empty())
     return invalid_input(fmt::format("{}: no printer in it has a result to check", report_path.string()));
-  return Exported{std::move(printers), std::nullopt};
+  return Exported{std::move(printers), std::move(orientation), std::nullopt};
 }
 
 }  // namespace skinframe::check

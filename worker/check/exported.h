@@ -122,8 +122,20 @@ struct ExportedPrinter {
   bool solid() const { return termination == "SOLID"; }  // thin everywhere: no frame, no frame.json
 };
 
+// How the body was put down, where the best attitude was asked for.
+struct ExportedAttitude {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // of the body as the file has it
+  double support_estimate_mm3 = 0, standing_margin_mm = 0;
+};
+struct ExportedOrientation {
+  std::string printer;  // whose curve and radii it was ranked by
+  ExportedAttitude chosen;
+  std::optional<ExportedAttitude> runner_up;
+};
+
 struct Exported {
   std::vector<ExportedPrinter> printers;
+  std::optional<ExportedOrientation> orientation;  // none: not asked for, or nothing to rank by
   // The result of a frame problem: report.json's "frame" and result.json. Of ExportedPrinter the fields that
   // a frame has; printer is "frame", solid, skin and mesh are not there.
   std::optional<ExportedPrinter> solution;

@@ -132,7 +132,10 @@ class Print {
         // What comes down to a joint goes on to the foot, unless it is within a wall that holds it.
         needed = needed && (s.external || !in_steep_wall(s.upper, Ask::kSurely));
       } else {
-        needed = needed && !on_plate(s.upper) && !held_by_skin(s.upper, Ask::kSurely);
+        // One that holds the skin stands where the skin ends below, be it the edge of a steep wall.
+        needed =
+            needed && !on_plate(s.upper) &&
+            !(holds_skin(s.upper) ? solid_below(s.upper, Ask::kSurely) : held_by_skin(s.upper, Ask::kSurely));
       }
       if (s.upper < static_cast<int>(own_)) {
         needed = needed && hangs[s.upper];
@@ -297,6 +300,9 @@ class Print {
   }
   bool held_by_skin(int node, Ask ask) const { return in_steep_wall(node, ask) || solid_below(node, ask); }
 
+  bool holds_skin(int node) const {
+    return node >= static_cast<int>(own_) && supports_.nodes[node - own_].on == "roof";
+  }
   // A node along a support, and nothing that is to be held for its own sake.
   bool is_joint(int node) const {
     return node >= static_cast<int>(own_) && supports_.nodes[node - own_].on == "support";

@@ -16,6 +16,7 @@ Result<OrientedSolid> orient_solid(const Solid& solid, const JobRequest& request
         return printer.printer.process == PrintProcess::kExtrusion && printer.printer.printable_length;
       });
   if (extrusion == request.printers.end()) return out;
+  out.facts.printer = extrusion->printer.id;
   OrientOptions options;
   options.min_radius_mm = extrusion->printer.min_radius_mm;
   options.slenderness = extrusion->material.slenderness;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "worker/mesh/write_stl.h"
@@ -50,7 +51,11 @@ Result<std::optional<PlannedSupports>> plan_print(const FrameProblem& problem,
     FlatSkin held = bare;
     held.hold(holders_of(problem.frame, radii_mm, supports.plan, curve));
     supports.overhang = held.measure();
-    const auto more = held.points_to_hold(kMostRoofPoints - options.roof_points.size());
+    auto more = held.points_to_hold(kMostRoofPoints - options.roof_points.size());
+    std::erase_if(more, [&](const Eigen::Vector3d& point) {  // asked for already, and no use there
+      return std::find(options.roof_points.begin(), options.roof_points.end(), point) !=
+             options.roof_points.end();
+    });
     if (more.empty() || round == kMostRoofRounds) break;
     options.roof_points.insert(options.roof_points.end(), more.begin(), more.end());
   }

@@ -90,7 +90,8 @@ json tried_json(const OrientationFacts::Tried& tried) {
 }
 
 json orientation_json(const OrientationFacts& facts) {
-  return {{"candidates", facts.candidates},
+  return {{"printer", facts.printer.empty() ? json(nullptr) : json(facts.printer)},
+          {"candidates", facts.candidates},
           {"passed_over", facts.passed_over},
           {"chosen", facts.chosen ? tried_json(*facts.chosen) : json(nullptr)},
           {"runner_up", facts.runner_up ? tried_json(*facts.runner_up) : json(nullptr)}};

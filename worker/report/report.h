@@ -49,6 +49,7 @@ struct OrientationFacts {
     double support_estimate_mm3 = 0;
     double margin_mm = 0;  // of the solid's centroid inside its base contact
   };
+  std::string printer;                     // whose curve and radii it was ranked by
   std::optional<Tried> chosen, runner_up;  // no choice: nothing to rank by, or nothing that fits
   int candidates = 0;
   int passed_over = 0;  // better ones that do not fit every tray

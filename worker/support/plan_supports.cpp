@@ -108,6 +108,10 @@ class Planner {
     const int own = static_cast<int>(frame_.nodes_mm.size());
     return node < own ? -1 : plan_.nodes[node - own].strut;
   }
+  bool holds_skin(int node) const {
+    const int own = static_cast<int>(frame_.nodes_mm.size());
+    return node >= own && plan_.nodes[node - own].on == On::kRoof;
+  }
   bool on_same_strut(int node, int other) const {
     const int j = strut_of(node);
     return j >= 0 && (strut_of(other) == j || frame_.struts[j].a == other || frame_.struts[j].b == other);
@@ -148,7 +152,9 @@ class Planner {
       return ok_status();
     }
     const auto below = footing_below(body_, at);
-    if (!below || is_in_steep_wall(body_, at, flattest_)) {
+    // A roof point was chosen because the skin there overhangs: the lower edge of a thin wall does, though
+    // the wall beside it is steep.
+    if (!below || (!holds_skin(node) && is_in_steep_wall(body_, at, flattest_))) {
       plan_.held_by_wall += inserted;
       return ok_status();
     }

@@ -11,8 +11,8 @@
 // Each of them gets one support and only where it has no other way down, so that none is useless.
 //
 // A node needs no support of its own within plate_reach_mm of the base plane, nor in a wall no flatter than
-// self_supporting_angle(curve): the skin below it holds it. A support within M that comes to such a wall ends
-// there.
+// self_supporting_angle(curve): the skin below it holds it. (A roof point in such a wall does: it stands
+// where the wall ends below.) A support within M that comes to such a wall ends there.
 //
 // Guarantees:
 //  1. Every strut of the frame, divided at its nodes, and every support strut satisfies l <= p(theta).

@@ -5,7 +5,9 @@
 // (22) bounds the vertical deformation of each strut. Taken for every strut under every load it cannot hold:
 // a hanging or a level strut has to give way to carry anything. It is read here as |d_az - d_bz| <= epsilon
 // under self weight while printing, level struts exempt. Supports start at their least radii, where the
-// frame's own optimum is kept; where (22) does not hold they grow together.
+// frame's own optimum is kept; where (22) does not hold they grow together. The frame has to keep the job's
+// loads without them, so its least volume plus theirs at least radii bounds every SizeOpt over both from
+// below: where (22) holds at once, this is its optimum.
 #pragma once
 
 #include "worker/mechanics/frame_problem.h"

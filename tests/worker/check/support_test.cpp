@@ -131,6 +131,36 @@ TEST_F(SupportCheck, SkinThatNothingHoldsIsSeen) {
   EXPECT_THAT(denied([](ExportedSupports& s) { s.beyond_share += 0.01; }), Contains("overhanging skin"));
 }
 
+TEST_F(SupportCheck, WithoutTheStrutsOutsideALayerStartsInTheAir) {
+  ExportedPrinter copy = *result_;
+  copy.supports->external_mesh = {};
+  Verdict verdict;
+  claim_layers(copy, &verdict);
+  EXPECT_FALSE(verdict.claims.front().holds) << verdict.claims.front().measured;
+}
+
+// Fine detail smoothed, the best attitude looked for, supports on top of both.
+TEST(SmoothedPrint, WithSupportsInItsBestAttitudeKeepsEveryClaim) {
+  test::TemporaryFolder folder;
+  JobRequest request = test::sample_job("relief", 50, 80, folder.path());
+  request.printers = {test::makerbot_pla()};
+  request.options.smooth = Smooth::kOn;
+  request.options.orient = Orient::kBest;
+  RunContext context;
+  auto outcomes = run_pipeline(request, folder.path() / "out", PipelineObserver{}, context);
+  ASSERT_TRUE(outcomes.ok() && outcomes->front().succeeded());
+  auto exported = read_exported(folder.path() / "out", context);
+  ASSERT_TRUE(exported.ok()) << exported.error().message;
+  EXPECT_TRUE(exported->orientation.has_value());
+  EXPECT_TRUE(exported->printers.front().added_skin_mm3.has_value());
+  ASSERT_TRUE(exported->printers.front().supports.has_value());
+  EXPECT_GT(exported->printers.front().supports->count, 0);
+  auto verdicts = check_directory(folder.path() / "out", context);
+  ASSERT_TRUE(verdicts.ok()) << verdicts.error().message;
+  EXPECT_TRUE(verdicts->front().holds()) << to_text(*verdicts);
+  EXPECT_THAT(to_text(*verdicts), testing::HasSubstr("orientation: by estimate"));
+}
+
 TEST_F(SupportCheck, AFalseDeformationIsSeen) {
   EXPECT_THAT(denied([](ExportedSupports& s) { s.worst_vertical_deformation_mm *= 0.5; }),
               Contains("deformation while printing (paper model)"));

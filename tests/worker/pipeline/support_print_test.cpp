@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numbers>
 
 #include "tests/worker/pipeline/small_job.h"
@@ -17,6 +18,8 @@
 
 namespace skinframe {
 namespace {
+
+constexpr double kMaxStrutMm = 100;
 
 class SupportedBodies : public testing::TestWithParam<const char*> {};
 
@@ -45,6 +48,12 @@ TEST_P(SupportedBodies, PrintWithoutIslandsAndWithHardlyAnyFreeOverhang) {
   ASSERT_TRUE(supports.ok() && supports->has_value());
   const PlannedSupports& planned = **supports;
   EXPECT_TRUE(planned.state.holds());
+  // No support had to grow for that: least radii are SizeOpt's own answer.
+  double thinnest_mm = kMaxStrutMm;
+  for (const SupportStrut& strut : planned.plan.struts) thinnest_mm = std::min(thinnest_mm, strut.radius_mm);
+  if (!planned.plan.struts.empty()) {
+    EXPECT_EQ(thinnest_mm, printer.min_radius_mm);
+  }
   EXPECT_LE(planned.overhang.roof_beyond_mm2 + planned.overhang.underside_beyond_mm2,
             0.02 * planned.cavity_surface_mm2);
   // On a coarser lattice the thinnest struts would fall between its cells.

@@ -125,6 +125,24 @@ TEST(PlanSupports, ASteepWallHoldsWhatIsInIt) {
   EXPECT_EQ(plan.held_by_wall, 2);
 }
 
+TEST(PlanSupports, TheLowerEdgeOfAThinWallIsHeldThoughTheWallIsSteep) {
+  // A fin 1 mm thick that ends 30 mm above the base plane.
+  PrintedBody fin = table_top();
+  fin.depth_mm = [](const Eigen::Vector3d& p) { return std::min(0.5 - std::abs(p.x()), p.z() - 30.0); };
+  fin.outward = [](const Eigen::Vector3d& p) { return Eigen::Vector3d(p.x() < 0 ? -1 : 1, 0, 0); };
+  Frame frame;
+  frame.nodes_mm = {{0.1, 0, 33}, {0.1, 0, 38}};
+  frame.struts = {{0, 1, false}};
+  ASSERT_TRUE(is_in_steep_wall(fin, {0.1, 0, 30.5}, 45 * M_PI / 180));
+  EXPECT_TRUE(plan_of(frame, fin).struts.empty()) << "higher up the wall holds its nodes";
+  SupportOptions options;
+  options.roof_points = {{0.1, 0, 30.5}};
+  const SupportPlan plan = plan_of(frame, fin, options);
+  ASSERT_EQ(plan.struts.size(), 1u);
+  EXPECT_EQ(plan.struts[0].kind, SupportKind::kExternal);
+  EXPECT_EQ(plan.nodes[plan.struts[0].lower - 2].on, On::kPlate);
+}
+
 TEST(PlanSupports, ThePlateHoldsWhatLiesOnIt) {
   Frame frame;
   frame.nodes_mm = {{0, 0, 0.8}, {40, 0, 0.8}};
