@@ -71,9 +71,10 @@ Result<SampledFrame> sample_again(const InitialFrame& earlier, PrinterReport* re
 
 }  // namespace
 
-Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const PrinterRequest& request,
-                                      const JobRequest& job, const std::filesystem::path& out_dir,
-                                      const PipelineObserver& observer, const RunContext& shared) {
+Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, SharedSkins& skins,
+                                      const PrinterRequest& request, const JobRequest& job,
+                                      const std::filesystem::path& out_dir, const PipelineObserver& observer,
+                                      const RunContext& shared) {
   const PrinterProfile& printer = request.printer;
   if (auto fits = fits_tray(prepared.solid, printer); !fits) return fits.error();
   PrinterReport report = begin_report(request);
@@ -88,8 +89,10 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, const Print
   SkinOptions skin_options;
   skin_options.thickness_mm = printer.skin_thickness_mm();
   skin_options.smooth = job.options.smooth;
-  auto skin = build_skin(prepared.solid, skin_options, context);
-  if (!skin) return skin.error();
+  auto shared_skin =
+      skins.get(skin_options.thickness_mm, [&] { return build_skin(prepared.solid, skin_options, context); });
+  if (!shared_skin) return shared_skin.error();
+  const std::shared_ptr<const Skin> skin = std::move(shared_skin).value();
   skin_volume_mm3 = skin->volume_mm3;
   report.thin = skin->thin;
   if (skin->smoothing) report_smoothing(*skin->smoothing, &report);

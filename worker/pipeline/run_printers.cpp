@@ -9,6 +9,7 @@
 #include <optional>
 #include <stop_token>
 
+#include "worker/pipeline/fits_tray.h"
 #include "worker/pipeline/make_skin_frame.h"
 
 namespace skinframe {
@@ -38,6 +39,8 @@ class PrinterRun {
         context_(context),
         forward_stop_(context.stop, [this] { stop_.request_stop(); }),
         reports_(request.printers.size()) {
+    for (const PrinterRequest& printer : request.printers)  // the others will not ask
+      if (fits_tray(prepared.solid, printer.printer)) skins_.announce(printer.printer.skin_thickness_mm());
     told_.checkpoints = observer.checkpoints;
     told_.progress = [this](const PipelineProgress& progress) {
       const std::scoped_lock lock(observer_mutex_);
@@ -82,7 +85,7 @@ class PrinterRun {
       if (!again) tell_end(*reports_[i]);
     };
     try {
-      auto made = make_skin_frame(prepared_, printer, request_, out_dir_, told_, context);
+      auto made = make_skin_frame(prepared_, skins_, printer, request_, out_dir_, told_, context);
       if (made) {
         keep(std::move(made).value());
       } else if (ends_the_job(made.error())) {
@@ -117,6 +120,7 @@ class PrinterRun {
   const PipelineObserver& observer_;
   const RunContext& context_;
   PipelineObserver told_;
+  SharedSkins skins_;
   std::mutex observer_mutex_;
   std::stop_source stop_;
   std::stop_callback<std::function<void()>> forward_stop_;

@@ -5,7 +5,8 @@
 // Guarantees:
 //  1. One report a printer, in the request's order, and the same at any thread count.
 //  2. A printer that is refused or fails does not sink the others; its report says why.
-//  3. The observer's functions are called one at a time; printer_ended as each printer ends.
+//  3. Printers whose skins are equally thick share one.
+//  4. The observer's functions are called one at a time; printer_ended as each printer ends.
 #pragma once
 
 #include <filesystem>
