@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # Installs the Debian 12 packages that are missing: those to build and run; with "tests" those that only the tests
-# need too, with "package" those that pack, with "containers" those that run containers. Silent and quick when all are there.
+# need too, with "package" those that pack, with "containers" those that run containers, with "python" those that make and
+# run the Python client. Silent and quick when all are there.
 set -euo pipefail
 
 build=(g++ cmake ninja-build pkg-config libeigen3-dev libcgal-dev libceres-dev libgrpc++-dev libprotobuf-dev
@@ -15,13 +16,17 @@ tests=(libgtest-dev libgmock-dev prusa-slicer openssl coinor-libipopt-dev
 
 package=(ccache dpkg-dev file)
 containers=(podman runc golang-github-containernetworking-plugin-dnsname debootstrap debian-archive-keyring iptables
-            podman-compose openssl python3-grpcio)
+            podman-compose openssl python3-grpcio python3-protobuf python3-pip python3-setuptools python3-wheel
+            protobuf-compiler protobuf-compiler-grpc)
+python=(python3-venv python3-pip python3-setuptools python3-wheel python3-grpcio python3-protobuf protobuf-compiler
+        protobuf-compiler-grpc)
 
 wanted=("${build[@]}")
 case "${1:-}" in
   tests) wanted+=("${tests[@]}") ;;
   package) wanted+=("${package[@]}") ;;
   containers) wanted=("${containers[@]}") ;;
+  python) wanted=("${python[@]}") ;;
 esac
 
 missing=()

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# Installs what is missing, builds, runs all tests of ctest; with SKINFRAME_CONTAINERS=on those in containers after them.
+# Installs what is missing, builds, runs all tests of ctest and, where containers can run, those in containers after
+# them; where not, it says so. SKINFRAME_CONTAINERS=off leaves them out.
 #   ./tests/run.sh -R worker.mesh                   only these; arguments go to ctest
 #   ./tests/run.sh --containers                     only those in containers: images, faults on a network of their own
 #   ./tests/run.sh --containers Faults              only these of them
@@ -10,12 +11,22 @@
 # SKINFRAME_CORPUS=full takes every model of the corpus at its full size through the whole job: half an hour more.
 set -euo pipefail
 
-# Docker where it runs, else podman as root. 77: containers cannot run here, and it was said why.
+# Docker where it runs, else podman as root. 77: containers cannot run here, and it was said why. An interrupt is passed
+# on, so that nothing stays behind.
 in_containers() {
-  if ! docker info >/dev/null 2>&1; then
-    [ "$(id -u)" -eq 0 ] && "$here/deploy/install-packages.sh" containers
+  if ! timeout 60 docker info >/dev/null 2>&1 && [ "$(id -u)" -eq 0 ]; then
+    "$here/deploy/install-packages.sh" containers || echo "run.sh: podman could not be installed" >&2
   fi
-  /usr/bin/python3 -B "$here/tests/containers/main.py" "$@"
+  /usr/bin/python3 -B "$here/tests/containers/main.py" "$@" &
+  local child=$! code=0
+  trap 'kill -TERM "$child" 2>/dev/null || true' INT TERM
+  wait "$child" || code=$?
+  while kill -0 "$child" 2>/dev/null; do
+    code=0
+    wait "$child" || code=$?
+  done
+  trap - INT TERM
+  return "$code"
 }
 
 here=$(cd "$(dirname "$0")/.." && pwd)
@@ -37,12 +48,12 @@ tests=0
 (cd "$here/build/release" && ctest --output-on-failure --parallel "$(nproc)" --no-tests=error "$@") || tests=$?
 [ $# -gt 0 ] && exit $tests
 containers=0
-if [ "${SKINFRAME_CONTAINERS:-off}" = off ]; then
-  echo "run.sh: the tests in containers were not asked for: SKINFRAME_CONTAINERS=on, or --containers alone" >&2
-elif [ "$SECONDS" -gt 3000 ]; then
+if [ "${SKINFRAME_CONTAINERS:-on}" = off ]; then
+  echo "run.sh: the tests in containers were left out: SKINFRAME_CONTAINERS=off" >&2
+elif [ "$SECONDS" -gt 3900 ]; then
   echo "run.sh: THE TESTS IN CONTAINERS WERE NOT RUN: the others took $((SECONDS / 60)) minutes already" >&2
 else
-  in_containers || containers=$?
+  SKINFRAME_CONTAINERS_MINUTES=${SKINFRAME_CONTAINERS_MINUTES:-15} in_containers || containers=$?
 fi
 if [ $containers -eq 77 ]; then
   echo "run.sh: THE TESTS IN CONTAINERS WERE NOT RUN (see above)" >&2

@@ -6,7 +6,6 @@ import os
 import pathlib
 import shutil
 import socket
-import unittest
 
 import stage
 from engine import BASE, ROOT, TARGETS, run
@@ -42,7 +41,7 @@ with skinframe.connect(address, tls_ca=f"{secrets}/ca.crt", tls_cert=f"{secrets}
 """
 
 
-class Images(unittest.TestCase):
+class Images(stage.Test):
     def test_each_is_small_and_has_a_user_of_its_own(self):
         for target in ("server", "worker", "client"):
             with self.subTest(target):
@@ -71,7 +70,7 @@ class Images(unittest.TestCase):
             self.assertEqual(asked.returncode, 1, target)
 
 
-class Packages(unittest.TestCase):
+class Packages(stage.Test):
     def test_they_install_and_start_on_a_bare_machine(self):
         packages = stage.farm.folder / "packages"
         kept = stage.engine("create", stage.images["build"]).stdout.strip()
@@ -84,11 +83,12 @@ class Packages(unittest.TestCase):
         self.assertIn(f"{PRINTERS[0]}: yes", done.stdout)
 
 
-class Compose(unittest.TestCase):
+class Compose(stage.Test):
     """compose.yaml as it stands, by docker compose or podman-compose, with the host's command line and Python
     client."""
 
     def setUp(self) -> None:
+        super().setUp()
         self.folder = stage.farm.folder / "deploy"
         self.folder.mkdir()
         for name in ("compose.yaml", "make-secrets.sh", "dev-ca.sh", "tenants.json"):
@@ -99,12 +99,13 @@ class Compose(unittest.TestCase):
             port = free.getsockname()[1]
         self.address = f"localhost:{port}"
         self.environment = os.environ | {"FARM_IMAGES": "test", "FARM_PORT": str(port), "FARM_WORKERS": "2"}
-        self.addCleanup(self.compose, "down", "--volumes" if stage.engine.program == "docker" else "-v")
+        self.name = f"{stage.farm.name}-compose"
+        self.addCleanup(stage.engine.remove_all, self.name)
         self.compose("up", "--detach")
 
     def compose(self, *words: str) -> str:
         program = ["docker", "compose"] if stage.engine.program == "docker" else ["podman-compose"]
-        return run([*program, "-p", f"{stage.farm.name}-compose", *words], cwd=self.folder, env=self.environment).stdout
+        return run([*program, "-p", self.name, *words], cwd=self.folder, env=self.environment).stdout
 
     def test_the_stack_runs_a_job_for_both_printers_from_the_hosts_command_line_and_from_python(self):
         programs = pathlib.Path(os.environ.get("SKINFRAME_BIN_DIR") or ROOT / "build" / "release" / "bin")

@@ -4,18 +4,21 @@ deploy/compose.yaml gives them: read-only roots, no capabilities, TLS, secrets a
 from __future__ import annotations
 
 import json
-import os
 import pathlib
+import re
 import shutil
 import subprocess
 import tempfile
 import time
+import urllib.request
 from typing import Callable
 
 from engine import ROOT, Engine, run
 
 LEASE_S = 4
 SECRETS = "/run/secrets"
+SERVER_PORT = 7350
+METRICS_PORT = 9350
 
 
 def eventually(condition: Callable[[], object], seconds: float = 120, what: str = "", pause_s: float = 0.2) -> object:
@@ -30,7 +33,7 @@ def eventually(condition: Callable[[], object], seconds: float = 120, what: str 
 class Farm:
     def __init__(self, engine: Engine, images: dict[str, str]):
         self.engine, self.images = engine, images
-        self.name = f"skinframe-test-{os.getpid()}"
+        self.name = engine.name
         self.containers: list[str] = []
         self.folder = pathlib.Path(tempfile.mkdtemp(prefix="skinframe-containers-"))
         self.meshes = self.folder / "work"
@@ -53,11 +56,7 @@ class Farm:
 
     def remove(self) -> None:
         """Everything of this farm and nothing else, whatever state it is in."""
-        for name in self.containers:
-            self.engine("rm", "--force", "--volumes", name, check=False)
-        for volume in ("database", "server"):
-            self.engine("volume", "rm", "--force", f"{self.name}-{volume}", check=False)
-        self.engine("network", "rm", self.name, check=False)
+        self.engine.remove_all()
         shutil.rmtree(self.folder, ignore_errors=True)
 
     def run_container(self, role: str, target: str, words: list[object], *options: object,
@@ -87,7 +86,8 @@ class Farm:
             "server", "server",
             ["--store=postgresql:///?service=skinframe", "--artifacts=/var/lib/skinframe-server/artifacts",
              f"--tls-cert={SECRETS}/server.crt", f"--tls-key={SECRETS}/server.key", f"--client-ca={SECRETS}/ca.crt",
-             f"--tenants={SECRETS}/tenants.json", f"--lease={LEASE_S}", "--heartbeat=1", "--max-attempts=2"],
+             f"--tenants={SECRETS}/tenants.json", f"--lease={LEASE_S}", "--heartbeat=1", "--max-attempts=2",
+             f"--metrics=0.0.0.0:{METRICS_PORT}"],
             "--volume", f"{self.name}-server:/var/lib/skinframe-server",
             "--env", f"PGSERVICEFILE={SECRETS}/database-service",
             secrets=("server.crt", "server.key", "ca.crt", "tenants.json", "database-service"))
@@ -135,9 +135,26 @@ class Farm:
         assert test[:1] == ["CMD"], f"{name} has no health check of its own: {test}"
         return self.engine("exec", name, *test[1:], check=False).returncode == 0
 
+    def events(self, job_id: str) -> list[dict]:
+        return [json.loads(line) for line in self.ask("--json", "watch", job_id).stdout.splitlines()]
+
+    def metrics(self) -> dict[str, float]:
+        """What the server counts, by name with labels."""
+        with urllib.request.urlopen(f"http://{self.server_address()}:{METRICS_PORT}/metrics", timeout=30) as page:
+            lines = [line for line in page.read().decode().splitlines() if line and not line.startswith("#")]
+        return {name: float(value) for name, value in (line.rsplit(" ", 1) for line in lines)}
+
+    def server_address(self) -> str:
+        return self.engine.inspect(self.server)["NetworkSettings"]["Networks"][self.name]["IPAddress"]
+
+    def token_at_work(self, name: str) -> int | None:
+        """The fencing token of the job that it works on: its folder's name, as `ps` shows it."""
+        shown = self.engine("top", name, *(["args"] if self.engine.podman else []), check=False).stdout
+        found = re.search(r" run-job \S*/job-(\d+)", shown)
+        return int(found[1]) if found else None
+
     def at_work(self, name: str) -> bool:
-        return " run-job " in self.engine("top", name, "args", check=False).stdout if self.engine.podman else (
-            " run-job " in self.engine("top", name, check=False).stdout)
+        return self.token_at_work(name) is not None
 
     def logs(self, name: str) -> str:
         done = self.engine("logs", name, check=False)

@@ -14,10 +14,13 @@ mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/debian.sources 2>/dev
 debootstrap --variant=minbase --keyring=/usr/share/keyrings/debian-archive-keyring.gpg bookworm "$root" "$mirror" \
   >"$root.log" 2>&1 || { tail -5 "$root.log" >&2; exit 1; }
 rm -rf "$root"/etc/apt/sources.list "$root"/var/log/*.log "$root"/var/cache/apt/*.bin "$root"/var/cache/apt/archives/*.deb \
-  "$root"/var/lib/apt/lists/* "$root"/usr/share/doc/* "$root"/usr/share/man/* "$root"/debootstrap
+  "$root"/var/lib/apt/lists/* "$root"/debootstrap
+# What the registry's image is without and with: documentation and translations, but all licences.
+find "$root"/usr/share/doc -type f ! -name copyright -delete
+rm -rf "$root"/usr/share/{groff,info,lintian,man}/* "$root"/usr/share/locale/*/
+printf 'path-exclude=/usr/share/%s/*\n' doc groff info lintian locale man >"$root/etc/dpkg/dpkg.cfg.d/slim"
+printf 'path-include=/usr/share/%s\n' 'doc/*/copyright' locale/locale.alias >>"$root/etc/dpkg/dpkg.cfg.d/slim"
 touch "$root/etc/apt/sources.list.d/debian.sources"  # where builds mount this machine's
-# What the registry's image has as well.
-printf 'path-exclude=/usr/share/doc/*\npath-exclude=/usr/share/man/*\n' >"$root/etc/dpkg/dpkg.cfg.d/slim"
 printf '%s\n' 'Dir::Cache::pkgcache "";' 'Dir::Cache::srcpkgcache "";' 'Acquire::Languages "none";' \
   >"$root/etc/apt/apt.conf.d/docker-clean"
 printf '#!/bin/sh\nexit 101\n' >"$root/usr/sbin/policy-rc.d"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import functools
 import json
-import unittest
 
+import late
 import stage
 from engine import say
 from farm import eventually
@@ -21,21 +21,27 @@ def repeated(scenario):
             with self.subTest(round=number + 1):
                 self.two_workers()
                 scenario(self)
+                if ROUNDS > 1:
+                    say(f"{scenario.__name__}: round {number + 1} held")
 
     return rounds
 
 
-class Running(unittest.TestCase):
+class Running(stage.Test):
     """Two workers, before each scenario."""
 
     workers: list[str] = []
 
     def setUp(self) -> None:
-        self.addCleanup(self.tell_when_failed)
+        super().setUp()
+        self.addCleanup(self.tell_when_failed, self.failures())
         self.two_workers()
 
-    def tell_when_failed(self) -> None:
-        if self._outcome.success:
+    def failures(self) -> int:
+        return len(self._outcome.result.failures) + len(self._outcome.result.errors)
+
+    def tell_when_failed(self, before: int) -> None:
+        if self.failures() == before:
             return
         for name in stage.farm.containers:
             say(f"the end of {name}'s log:\n" + "\n".join(stage.farm.logs(name).splitlines()[-25:]))
@@ -55,6 +61,32 @@ class Running(unittest.TestCase):
                           what=f"{job_id} is at work")
         self.assertEqual(len(busy), 1)
         return busy[0]
+
+    def expect_lost_and_refused(self, job_id: str, worker: str, token: int, before: dict[str, float],
+                                done: dict) -> None:
+        """That worker lost the job's first attempt, its result was dropped, and where it is sent all the same the
+        server refuses it and nothing changes."""
+        eventually(lambda: f"job={job_id} dropped: the lease is not ours any more" in stage.farm.logs(worker),
+                   what="the late worker drops its result")
+        states = [event["state"] for event in stage.farm.events(job_id) if "state" in event]
+        self.assertEqual([(state["state"], state.get("attempt", 0)) for state in states],
+                         [("QUEUED", 0), ("RUNNING", 1), ("QUEUED", 1), ("RUNNING", 2), ("SUCCEEDED", 2)])
+        self.assertEqual(late.send_all(stage.farm, job_id, token),
+                         {"Complete": "ABORTED", "Heartbeat": "ABORTED", "Checkpoint": "ABORTED"})
+        self.assertEqual([event["state"] for event in stage.farm.events(job_id) if "state" in event], states)
+        self.assertEqual(stage.farm.job(job_id), done)
+        after = stage.farm.metrics()
+        for name, more in (('skinframe_rpc_seconds_count{method="skinframe.v1.WorkerService/Complete",code="ABORTED"}', 1),
+                           ("skinframe_lease_expiries_total", 1), ("skinframe_requeued_total", 1),
+                           ('skinframe_jobs_ended_total{state="SUCCEEDED",reason="NONE"}', 1)):
+            self.assertEqual(self.of(after, name) - self.of(before, name), more, name)
+
+    @staticmethod
+    def of(metrics: dict[str, float], name: str) -> float:
+        """Whatever the order of the labels."""
+        def parts(text: str) -> list[str]:
+            return sorted(text.replace("}", "").replace("{", ",").split(","))
+        return sum(value for key, value in metrics.items() if parts(key) == parts(name))
 
     def expect_done(self, job_id: str, **fields: object) -> dict:
         job = stage.farm.wait(job_id)
@@ -97,29 +129,27 @@ class Faults(Running):
     @repeated
     def test_a_partitioned_worker_loses_its_job_and_its_late_result_is_refused(self):
         job = stage.farm.submit(*STEADY)
-        cut = self.worker_of(job)
+        before, cut = stage.farm.metrics(), self.worker_of(job)
+        token = stage.farm.token_at_work(cut)
         stage.farm.partition(cut)
         try:
             done = self.expect_done(job, attempt=2)
         finally:
             stage.farm.heal(cut)
-        eventually(lambda: f"job={job} dropped: the lease is not ours any more" in stage.farm.logs(cut),
-                   what="the late worker drops its result")
+        self.expect_lost_and_refused(job, cut, token, before, done)
         eventually(lambda: stage.farm.healthy(cut), what="the healed worker is healthy")
-        self.assertEqual(stage.farm.job(job), done)
 
     @repeated
     def test_a_frozen_worker_wakes_up_to_a_lease_that_is_lost(self):
         job = stage.farm.submit(*STEADY)
-        frozen = self.worker_of(job)
+        before, frozen = stage.farm.metrics(), self.worker_of(job)
+        token = stage.farm.token_at_work(frozen)
         stage.engine("pause", frozen)
         try:
             done = self.expect_done(job, attempt=2)
         finally:
             stage.engine("unpause", frozen)
-        eventually(lambda: f"job={job} dropped: the lease is not ours any more" in stage.farm.logs(frozen),
-                   what="the late worker drops its result")
-        self.assertEqual(stage.farm.job(job), done)
+        self.expect_lost_and_refused(job, frozen, token, before, done)
 
     @repeated
     def test_a_watch_sees_every_event_over_a_restart_of_the_server(self):
