@@ -91,6 +91,19 @@ class CommandLine {
               "  skinframe sample --list\n  skinframe sample hanging-ball --out ball.stl");
     add_local("check", "Re-check every claim of a result from its files alone (runs here)",
               "  skinframe check fish");
+    add_local(
+        "render", "Pictures of a result from its files alone, without a display (runs here)",
+        "  skinframe render fish                              every picture, into fish/PRINTER/\n"
+        "  skinframe render fish --printer sinterstation-hiq  of one printer only\n"
+        "  skinframe render fish --out pictures --size 600    into pictures/PRINTER/, 600 px wide\n"
+        "  skinframe render fish --json                       {\"files\": [..]}\n"
+        "PNG files; their names are printed. frame.png: the struts by radius, supports in red.\n"
+        "cutaway.png: the printed solid cut through its middle. radii.png, lengths.png: how many struts\n"
+        "are no thicker, no longer than so much, before and after each stage of the optimiser.\n"
+        "deformation-NAME.png: the surface under a load case, where the result has\n"
+        "deformation-NAME.ply. A result of `submit FRAME.json` has the struts and the curves.\n"
+        "--size is the width in pixels, 120 to 4096 (1000). Exit codes: 0 drawn, 2 wrong usage, 3 no\n"
+        "result in DIR, 5 the pictures cannot be written.");
     add_local("solve-frame", "The optimiser alone, on a frame problem file (runs here)",
               "  skinframe solve-frame problem.json --out result.json");
     add_local(
@@ -256,9 +269,6 @@ class CommandLine {
 
 int skinframe_main(int argc, char** argv) {
   const std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
-  if (const auto verb = unbuilt_verb(words)) {
-    return tell({FailureKind::kUsage, fmt::format("`{}` is not built yet", *verb)});
-  }
   if (const auto verb = local_verb(words)) return tell(become_worker(verb->words));
   return CommandLine().run_words(argc, argv);
 }

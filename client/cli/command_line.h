@@ -16,9 +16,6 @@ struct LocalVerb {
 // for.
 std::optional<LocalVerb> local_verb(const std::vector<std::string>& words);
 
-// A verb of the design that this version does not build.
-std::optional<std::string> unbuilt_verb(const std::vector<std::string>& words);
-
 // The whole program; returns its exit code.
 int skinframe_main(int argc, char** argv);
 

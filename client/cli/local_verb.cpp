@@ -10,8 +10,8 @@
 namespace skinframe::client {
 namespace {
 
-constexpr std::array<std::string_view, 4> kLocalVerbs = {"sample", "check", "solve-frame", "calibrate"};
-constexpr std::array<std::string_view, 1> kUnbuiltVerbs = {"render"};
+constexpr std::array<std::string_view, 5> kLocalVerbs = {"sample", "check", "solve-frame", "calibrate",
+                                                         "render"};
 // Verbs of the server with a part that runs here: `printers import FILE`.
 constexpr std::array<std::string_view, 2> kProfileVerbs = {"printers", "materials"};
 
@@ -50,12 +50,6 @@ std::optional<LocalVerb> local_verb(const std::vector<std::string>& words) {
                                      "--json") != words.begin() + static_cast<std::ptrdiff_t>(*index);
   if (json_before) out.words.push_back("--json");
   return out;
-}
-
-std::optional<std::string> unbuilt_verb(const std::vector<std::string>& words) {
-  const auto index = verb_index(words);
-  if (!index || !contains(kUnbuiltVerbs, words[*index])) return std::nullopt;
-  return words[*index];
 }
 
 }  // namespace skinframe::client

@@ -58,6 +58,13 @@ TEST_F(Answers, RunMakesFilesThatTheCheckSaysYesTo) {
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
   const Ran check = skinframe({"check", out()});
   EXPECT_EQ(check.exit_code, 0) << check.out << check.err;
+  const Ran render = skinframe({"render", out(), "--size", "200", "--printer", "makerbot-replicator-2"});
+  EXPECT_EQ(render.exit_code, 0) << render.err;
+  for (const char* picture : {"frame.png", "radii.png", "lengths.png", "cutaway.png"})
+    EXPECT_NE(render.out.find(out() + "/makerbot-replicator-2/" + picture + "\n"), std::string::npos)
+        << render.out;
+  expect_sentence(skinframe({"render", out() + "-not"}), 3, "there is no such folder");
+  expect_sentence(skinframe({"render", out(), "--size", "9"}), 2, "--size");
   EXPECT_NE(check.out.find("makerbot-replicator-2: yes"), std::string::npos) << check.out;
 }
 

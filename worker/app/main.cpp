@@ -29,6 +29,7 @@ int main(int argc, char** argv) {
       "  skinframe-worker solve-frame P.json --out R.json   the optimiser alone\n"
       "  skinframe-worker check DIR                         judge exported files; 0: every claim holds, 1: "
       "one does not\n"
+      "  skinframe-worker render DIR                        pictures of exported files\n"
       "  skinframe-worker sample --list                     the bodies that ship with the program");
 
   AgentOptions agent;

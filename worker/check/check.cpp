@@ -19,6 +19,7 @@ Verdict judge(const ExportedPrinter& result, const std::optional<ExportedOrienta
   }
   if (!result.merged) {
     claim_frame(result, nullptr, &verdict);
+    claim_stages(result, &verdict);
     claim_mechanics(result, &verdict);
     claim_bounds(result, &verdict);
     return verdict;
@@ -43,6 +44,7 @@ Verdict judge(const ExportedPrinter& result, const std::optional<ExportedOrienta
     return verdict;
   }
   claim_frame(result, &outer, &verdict);
+  claim_stages(result, &verdict);
   claim_printed_struts(result, cavity, outer, &verdict);
   if (result.supports) {
     claim_supports(result, outer, &verdict);
@@ -64,6 +66,7 @@ Verdict judge_solution(const ExportedPrinter& solution) {
     return verdict;
   }
   claim_solution(solution, &verdict);
+  claim_stages(solution, &verdict);
   claim_mechanics(solution, &verdict);
   claim_bounds(solution, &verdict);
   return verdict;

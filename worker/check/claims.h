@@ -86,6 +86,10 @@ void claim_orientation(const ExportedOrientation& orientation, const ExportedPri
 // Of a body's centroid inside the hull of its base contact; negative outside.
 double standing_margin_mm(const TriangleMesh& outer_mesh);
 
+// The struts of each stage: as many as reported, of the reported volume, no radius below its bound; before and
+// after sizing of the same lengths, and those of the frame that was given.
+void claim_stages(const ExportedPrinter& result, Verdict* verdict);
+
 // Under gravity alone, one a node; empty where the stiffness is singular.
 std::vector<Eigen::Vector3d> own_weight_displacements_mm(const ExportedFrame& frame);
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "worker/check/exported_orientation.h"
+#include "worker/check/exported_stages.h"
 #include "worker/check/exported_supports.h"
 #include "worker/mesh/read_mesh.h"
 
@@ -300,6 +301,8 @@ Result<Exported> read_exported(const std::filesystem::path& directory, RunContex
       if (!frame) return frame.error();
       solution.frame = parse_frame(*frame);
       solution.certificate = parse_proof(*frame, "certificate", solution.frame);
+      solution.stages = parse_stages(*frame, report->at("frame").at("counts"));
+      report_volumes(&solution, report->at("frame").at("volumes_mm3").at("initial").get<double>());
       if (frame->contains("given")) read_given(frame->at("given"), *frame, &solution);
       return Exported{{}, std::nullopt, std::move(solution)};
     }
@@ -318,6 +321,8 @@ Result<Exported> read_exported(const std::filesystem::path& directory, RunContex
         if (!frame) return frame.error();
         printer.frame = parse_frame(*frame);
         printer.certificate = parse_proof(*frame, "certificate", printer.frame);
+        printer.stages = parse_stages(*frame, item.at("counts"));
+        report_volumes(&printer, std::nullopt);
         if (item.contains("supports") && frame->contains("supports"))
           printer.supports = parse_supports(frame->at("supports"), item.at("supports"),
                                             printer.frame.nodes_mm.size(), printer.frame.struts.size());

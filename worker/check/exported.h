@@ -85,6 +85,14 @@ struct ExportedSupports {
   TriangleMesh all_mesh, internal_mesh, external_mesh;  // empty where there is no such file
 };
 
+// Radii and lengths of the struts before the optimiser and after each of its stages but the last.
+struct ExportedStage {
+  std::string name;  // "initial", "size", "topology"
+  std::vector<double> radii_mm, lengths_mm;
+  int struts = 0;                    // as reported, as is the volume
+  std::optional<double> volume_mm3;  // none is reported of a mesh job's initial frame
+};
+
 struct ExportedPrinter {
   std::string printer, material;
   std::string termination;  // "OPTIMAL", "INFEASIBLE", "SOLID", ...
@@ -102,6 +110,7 @@ struct ExportedPrinter {
   std::optional<ExportedProof> bound_proof, relaxed_bound_proof;
   std::string balance, violated_constraint;
   int final_nodes = 0, final_struts = 0;
+  std::vector<ExportedStage> stages;       // empty where the file has none
   std::optional<double> added_skin_mm3;    // by smoothing; none where it was not applied
   std::optional<int> skin_struts_outside;  // as reported; none in a report that says nothing about it
   // profile

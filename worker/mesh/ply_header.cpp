@@ -155,7 +155,10 @@ Result<PlyHeader> read_ply_header(std::string_view bytes) {
       header.line_count = number;
       if (Status s = check_counts(header, bytes.size() - header.body_offset); !s.ok()) return s.error();
       return header;
-    } else if (!keyword.empty() && keyword != "ply" && keyword != "comment" && keyword != "obj_info") {
+    } else if (keyword == "comment") {
+      if (header.comments.size() < kMostPlyComments)
+        header.comments.emplace_back(trim(words).substr(0, kMostPlyCommentBytes));
+    } else if (!keyword.empty() && keyword != "ply" && keyword != "obj_info") {
       return line_error(number, fmt::format("{} is no word of a PLY header", quoted(keyword)));
     }
   }

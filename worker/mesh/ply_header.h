@@ -36,9 +36,12 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::kAscii;
   std::vector<PlyElement> elements;
+  std::vector<std::string> comments;  // the first few, their beginnings
   std::size_t body_offset = 0;
   std::uint64_t line_count = 0;
 };
+
+inline constexpr std::size_t kMostPlyComments = 32, kMostPlyCommentBytes = 200;
 
 // Guarantee: no element announces more records than the bytes behind the header can hold.
 Result<PlyHeader> read_ply_header(std::string_view bytes);

@@ -18,6 +18,23 @@ Status check_count(std::uint64_t count, std::uint64_t limit, std::string_view wh
       fmt::format("{} {} are more than the limit of {}; simplify the mesh", count, what, limit));
 }
 
+namespace {
+
+// Those of the vertices that drop_unused_vertices() keeps, in its order.
+std::vector<std::array<std::uint8_t, 3>> colours_of_used(std::vector<std::array<std::uint8_t, 3>> colours,
+                                                         const TriangleMesh& mesh) {
+  std::vector<bool> used(colours.size(), false);
+  for (const auto& triangle : mesh.triangles)
+    for (const int v : triangle) used[v] = true;
+  std::size_t kept = 0;
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v]) colours[kept++] = colours[v];
+  colours.resize(kept);
+  return colours;
+}
+
+}  // namespace
+
 Result<MeshFile> finish(PolygonSoup soup, std::string format, int index_base, const ReadRequest& request) {
   const auto vertex_count = static_cast<std::int64_t>(soup.vertices.size());
   // Fans and ears alike give corners - 2 triangles a face.
@@ -52,6 +69,7 @@ Result<MeshFile> finish(PolygonSoup soup, std::string format, int index_base, co
     if (!triangulate_polygon(corners, soup.vertices, file.mesh.triangles)) ++guessed;
   }
   file.mesh.vertices = std::move(soup.vertices);
+  if (!soup.colours.empty()) file.vertex_colours = colours_of_used(std::move(soup.colours), file.mesh);
   const std::size_t unused = drop_unused_vertices(file.mesh);
   if (polygons > 0) file.notes.push_back(fmt::format("cut {} polygons into triangles", polygons));
   if (guessed > 0) {

@@ -25,8 +25,9 @@ struct PolygonSoup {
     std::uint64_t count = 0;
     std::uint64_t line = 0;  // of a text file; 0 in a binary one, where the face's number names it
   };
-  std::vector<Eigen::Vector3d> vertices;  // finite
-  std::vector<std::int64_t> corners;      // from 0, not yet checked
+  std::vector<Eigen::Vector3d> vertices;             // finite
+  std::vector<std::array<std::uint8_t, 3>> colours;  // one a vertex, or none at all
+  std::vector<std::int64_t> corners;                 // from 0, not yet checked
   std::vector<Face> faces;
 };
 

@@ -16,6 +16,7 @@
 // or read; kCancelled.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -39,9 +40,12 @@ struct ReadLimits {
 };
 
 struct MeshFile {
-  TriangleMesh mesh;               // in the file's own units; a 3MF file knows its unit and comes in mm
-  std::string format;              // "STL (binary)", "STL (ASCII)", "OBJ", "PLY", "OFF", "3MF"
-  std::vector<std::string> notes;  // what was done beside reading: "triangulated 12 polygons"
+  TriangleMesh mesh;  // in the file's own units; a 3MF file knows its unit and comes in mm
+  // PLY with red, green, blue as uchar: one a vertex of `mesh`. Else empty.
+  std::vector<std::array<std::uint8_t, 3>> vertex_colours;
+  std::vector<std::string> comments;  // of a PLY header, the first few, as they are
+  std::string format;                 // "STL (binary)", "STL (ASCII)", "OBJ", "PLY", "OFF", "3MF"
+  std::vector<std::string> notes;     // what was done beside reading: "triangulated 12 polygons"
 };
 
 Result<MeshFile> read_mesh(const std::filesystem::path& path, const ReadLimits& limits, RunContext& context);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // PLY, ASCII and binary of both endians. Elements other than "vertex" and "face" and properties other than
-// x, y, z and the index list are read over.
+// x, y, z, the index list, and red, green, blue where all three are uchar, are read over.
 #include <fmt/format.h>
 
 #include <bit>
@@ -124,6 +124,20 @@ Status skip_property(PlyValues& values, const PlyProperty& property, std::string
   return ok_status();
 }
 
+// For each property 0, 1, 2 when it is red, green, blue, else -1; empty when not all three are there as
+// uchar.
+std::vector<int> colour_channels(const PlyElement& element) {
+  static constexpr std::string_view kNames[] = {"red", "green", "blue"};
+  std::vector<int> channel(element.properties.size(), -1);
+  for (int k = 0; k < 3; ++k) {
+    const auto place = element.find(kNames[k]);
+    if (!place || element.properties[*place].count_type || element.properties[*place].type != PlyType::kUint8)
+      return {};
+    channel[*place] = k;
+  }
+  return channel;
+}
+
 Status read_vertices(const PlyElement& element, PlyValues& values, RunContext& context, PolygonSoup& soup) {
   std::vector<int> axis(element.properties.size(), -1);
   static constexpr std::string_view kNames[] = {"x", "y", "z"};
@@ -134,12 +148,23 @@ Status read_vertices(const PlyElement& element, PlyValues& values, RunContext& c
     }
     axis[*place] = k;
   }
+  const std::vector<int> channel = colour_channels(element);
+  if (!channel.empty()) soup.colours.reserve(element.count);
   soup.vertices.reserve(element.count);
   for (std::uint64_t v = 0; v < element.count; ++v) {
     if (v % 65536 == 0 && context.cancelled()) return cancelled_error();
     Eigen::Vector3d p;
+    if (!channel.empty()) soup.colours.emplace_back();
     for (std::size_t i = 0; i < element.properties.size(); ++i) {
       const PlyProperty& property = element.properties[i];
+      if (!channel.empty() && channel[i] >= 0) {
+        const auto value = values.next(property.type);
+        if (!value) return record_error(values, "vertex", v, kEndsHere);
+        if (*value < 0 || *value > 255)
+          return record_error(values, "vertex", v, fmt::format("{} is no colour from 0 to 255", *value));
+        soup.colours.back()[channel[i]] = static_cast<std::uint8_t>(*value);
+        continue;
+      }
       if (axis[i] < 0) {
         if (Status s = skip_property(values, property, "vertex", v); !s.ok()) return s;
         continue;
@@ -223,7 +248,9 @@ Result<MeshFile> read_ply(const ReadRequest& request) {
     }
     if (!s.ok()) return s.error();
   }
-  return finish(std::move(soup), "PLY", 0, request);
+  auto file = finish(std::move(soup), "PLY", 0, request);
+  if (file) file.value().comments = header->comments;
+  return file;
 }
 
 }  // namespace skinframe

@@ -31,7 +31,7 @@ void pass(Archive& archive, Design& design) {
 
 template <class Archive>
 void pass(Archive& archive, StageRecord& record) {
-  archive(record.nodes, record.struts, record.volume_mm3);
+  archive(record.nodes, record.struts, record.volume_mm3, record.radii_mm, record.lengths_mm);
 }
 
 template <class Archive>

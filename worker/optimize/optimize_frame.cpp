@@ -19,14 +19,16 @@
 #include "worker/run/one_blas_thread.h"
 
 namespace skinframe {
-namespace {
-
-StageRecord record_of(const FrameProblem& problem, double volume_mm3) {
-  return {static_cast<int>(problem.frame.nodes_mm.size()), static_cast<int>(problem.frame.struts.size()),
-          volume_mm3};
+StageRecord record_of(const Frame& frame, std::vector<double> radii_mm, double volume_mm3) {
+  StageRecord record{static_cast<int>(frame.nodes_mm.size()),
+                     static_cast<int>(frame.struts.size()),
+                     volume_mm3,
+                     std::move(radii_mm),
+                     {}};
+  record.lengths_mm.reserve(frame.struts.size());
+  for (const Strut& strut : frame.struts) record.lengths_mm.push_back(frame.length_mm(strut));
+  return record;
 }
-
-}  // namespace
 
 const char* to_string(Termination termination) {
   switch (termination) {
@@ -82,7 +84,9 @@ class Algorithm {
         design_(initial_design(problem)) {
     ProgramRequest bounds;
     set_size_bounds(problem, bounds);
-    result_.initial = record_of(problem, frame_volume_mm3(problem.frame, radii_of(bounds.lower_mm2)));
+    std::vector<double> radii_mm = radii_of(bounds.lower_mm2);
+    const double volume_mm3 = frame_volume_mm3(problem.frame, radii_mm);
+    result_.initial = record_of(problem.frame, std::move(radii_mm), volume_mm3);
   }
 
   Result<OptimizeResult> run() {
@@ -118,7 +122,7 @@ class Algorithm {
       take_sizing(design_, std::move(sized));
       design_.warm = session_.latest();
     });
-    result_.size = result_.topology = result_.geometry = record_of(design_.problem, design_.volume_mm3);
+    result_.size = result_.topology = result_.geometry = present();
     if (session_.cancelled() || !options_.bounds || design_.reason == Termination::kInfeasible) return;
     timed("bound", Stage::kSize, [&] {
       VolumeBound bound = bound_below(design_.problem, design_.areas_mm2, {}, result_.size.volume_mm3);
@@ -185,7 +189,7 @@ class Algorithm {
             [&] { design_ = optimise_topology(std::move(design_), !first || !options_.geometry, session_); });
     if (session_.cancelled()) return;
     if (first) {
-      result_.topology = record_of(design_.problem, design_.volume_mm3);
+      result_.topology = present();
       if (wanted) bound_removal(before);
       if (session_.cancelled()) return;
     }
@@ -203,8 +207,12 @@ class Algorithm {
         loop_.settled = outcome.settled;
       });
     if (session_.cancelled()) return;
-    result_.geometry = record_of(design_.problem, design_.volume_mm3);
+    result_.geometry = present();
     result_.outer_iterations = loop_.round + 1;
+  }
+
+  StageRecord present() const {
+    return record_of(design_.problem.frame, radii_of(design_.areas_mm2), design_.volume_mm3);
   }
 
   void keep(Stage finished) {

@@ -114,7 +114,11 @@ struct StageRecord {
   int nodes = 0;
   int struts = 0;
   double volume_mm3 = 0;
+  std::vector<double> radii_mm, lengths_mm;  // one a strut, in the order of the stage's frame
 };
+
+// Of a frame with these radii. lengths_mm and the counts are the frame's.
+StageRecord record_of(const Frame& frame, std::vector<double> radii_mm, double volume_mm3);
 
 struct OptimizeResult {
   Termination reason = Termination::kOptimal;

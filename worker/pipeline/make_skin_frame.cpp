@@ -18,6 +18,7 @@
 #include "worker/pipeline/write_results.h"
 #include "worker/problem/problem_file.h"
 #include "worker/problem/proof_json.h"
+#include "worker/problem/strut_sizes.h"
 
 namespace skinframe {
 namespace {
@@ -166,6 +167,7 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, SharedSkins
   report.seconds.insert(result.seconds.begin(), result.seconds.end());
   const auto folder = out_dir / printer.id;
   auto frame_json = to_json(result.problem, result.radii_mm, result.displacements_mm);
+  frame_json[kStrutSizes] = strut_sizes_json(result);
   if (result.certificate) frame_json["certificate"] = certificate_json(*result.certificate);
   if (report.supports) frame_json["supports"] = supports_json(*report.supports, printer, *skin);
   if (auto written = write_json(folder / "frame.json", frame_json); !written) return written.error();

@@ -37,10 +37,8 @@ OptimizeResult at_lower_bounds(FrameProblem problem) {
   const auto responses = solve_equilibrium(result.problem, areas);
   for (const CaseResponse& response : responses) result.displacements_mm.push_back(response.displacements_mm);
   result.evaluation = evaluate(result.problem, result.radii_mm, responses);
-  const Frame& frame = result.problem.frame;
-  result.initial = result.size = result.topology =
-      result.geometry = {static_cast<int>(frame.nodes_mm.size()), static_cast<int>(frame.struts.size()),
-                         result.evaluation.frame_volume_mm3};
+  result.initial = result.size = result.topology = result.geometry =
+      record_of(result.problem.frame, result.radii_mm, result.evaluation.frame_volume_mm3);
   return result;
 }
 

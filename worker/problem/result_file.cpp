@@ -11,6 +11,7 @@
 #include "worker/mechanics/equilibrium.h"
 #include "worker/problem/problem_file.h"
 #include "worker/problem/proof_json.h"
+#include "worker/problem/strut_sizes.h"
 
 namespace skinframe {
 namespace {
@@ -88,6 +89,7 @@ json result_json(const OptimizeResult& result, const FrameProblem& given) {
   document["seconds"] = result.seconds;
   document["node_origin"] = result.node_origin;
   document["strut_origin"] = result.strut_origin;
+  document[kStrutSizes] = strut_sizes_json(result);
   return document;
 }
 

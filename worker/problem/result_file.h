@@ -8,7 +8,8 @@
 //   "relaxed_gap" (topology volume / bound - 1; removable struts may be absent) or null, "certificate" when
 //   infeasible and proven (proof_json.h; of this frame) or null, "iterations": {"outer", "factorisations",
 //   "interior_point", "factorisations"}, "kkt_residual", "evaluation": the ratios of mechanics/evaluation.h,
-//   "seconds": {stage: s}, "node_origin", "strut_origin": indices in the input, and on each load case
+//   "seconds": {stage: s}, "node_origin", "strut_origin": indices in the input, "strut_sizes" (strut_sizes.h),
+//   and on each load case
 //   "axial_force_n", "axial_stress_mpa", "shear_stress_mpa" (one a strut), "reactions_n" (one a node).
 #pragma once
 

@@ -22,7 +22,7 @@ constexpr double kCrease = 0.7;      // cosine: smooth shading ends at edges sha
 double brightness(const Eigen::Vector3d& normal) {
   static const Eigen::Vector3d key = Eigen::Vector3d(-0.45, 0.65, 0.8).normalized();
   static const Eigen::Vector3d fill = Eigen::Vector3d(0.8, 0.1, 0.6).normalized();
-  return std::min(1.0, 0.42 + 0.5 * std::max(0.0, normal.dot(key)) + 0.18 * std::max(0.0, normal.dot(fill)));
+  return std::min(1.0, 0.5 + 0.5 * std::max(0.0, normal.dot(key)) + 0.18 * std::max(0.0, normal.dot(fill)));
 }
 
 std::uint8_t to_byte(double value) { return static_cast<std::uint8_t>(std::clamp(value, 0.0, 255.0) + 0.5); }
@@ -57,10 +57,13 @@ double Scene::cut_depth_mm(int x, int y) const {
 }
 
 void Scene::put(std::size_t sample, double depth_mm, const Eigen::Vector3d& normal, const Colour& colour) {
+  put_lit(sample, depth_mm, brightness(normal), colour);
+}
+
+void Scene::put_lit(std::size_t sample, double depth_mm, double light, const Colour& colour) {
   const auto depth = static_cast<float>(depth_mm);
   if (!(depth > depth_mm_[sample])) return;
   depth_mm_[sample] = depth;
-  const double light = brightness(normal);
   lit_[sample] = {to_byte(colour[0] * light), to_byte(colour[1] * light), to_byte(colour[2] * light), 255};
 }
 
@@ -163,7 +166,7 @@ void Scene::close_cut(Colour colour) {
   for (int y = 0; y < height_; ++y)
     for (int x = 0; x < width_; ++x) {
       const std::size_t sample = std::size_t(y) * std::size_t(width_) + std::size_t(x);
-      if (exits_[sample] > 0) put(sample, cut_depth_mm(x, y), cut_seen_, colour);
+      if (exits_[sample] > 0) put_lit(sample, cut_depth_mm(x, y), 1, colour);
     }
 }
 
@@ -196,7 +199,7 @@ double Scene::darkness(int x, int y) const {
   return std::min(1.0, sum / (8.0 * rings));
 }
 
-Image Scene::picture(Colour background) const {
+Image Scene::picture(Colour background, double darkest) const {
   Image image(width_ / kSamples, height_ / kSamples, background);
   for (int py = 0; py < image.height(); ++py)
     for (int px = 0; px < image.width(); ++px) {
@@ -207,7 +210,7 @@ Image Scene::picture(Colour background) const {
         const auto& lit = lit_[std::size_t(y) * std::size_t(width_) + std::size_t(x)];
         if (lit[3] == 0) continue;
         ++covered;
-        const double light = 1 - 0.75 * darkness(x, y);
+        const double light = 1 - darkest * darkness(x, y);
         for (int c = 0; c < 3; ++c) sum[c] += light * lit[c];
       }
       if (covered == 0) continue;

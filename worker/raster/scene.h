@@ -40,17 +40,20 @@ class Scene {
   void add_mesh(const TriangleMesh& mesh, const std::vector<Colour>& vertex_colours);
   // A strut as it is printed: round, with round ends. Nothing where the radius is not positive.
   void add_capsule(const Eigen::Vector3d& a_mm, const Eigen::Vector3d& b_mm, double radius_mm, Colour colour);
-  // Fills the material in the plane of the cut; once, after the last mesh. Without a cut nothing happens.
+  // Fills the material in the plane of the cut, in this very colour without light; once, after the last mesh.
+  // Without a cut nothing happens.
   void close_cut(Colour colour);
 
   // Share of the picture that anything covers.
   double covered_share() const;
-  Image picture(Colour background) const;
+  // darkest, in [0, 1]: of the deepest corners between surfaces.
+  Image picture(Colour background, double darkest = 0.75) const;
 
  private:
   struct Corner;
   void add(const TriangleMesh& mesh, const std::vector<Colour>* vertex_colours, Colour front, Colour back);
   void add_triangle(const Corner (&corners)[3], Colour front, Colour back, bool by_corner);
+  void put_lit(std::size_t sample, double depth_mm, double light, const Colour& colour);
   void put(std::size_t sample, double depth_mm, const Eigen::Vector3d& normal, const Colour& colour);
   double cut_depth_mm(int x, int y) const;  // of the plane on this sample's ray
   double darkness(int x, int y) const;

@@ -79,8 +79,10 @@ void draw_text(Image& image, double x, double y, std::string_view text, double s
 }
 
 std::string fit_text(std::string_view text, double size_px, double width_px) {
-  if (text_width_px(text, size_px) <= width_px) return std::string(text);
-  std::string kept(text);
+  constexpr std::size_t kMost =
+      1000;  // characters; no line of a picture holds more, and the loop is quadratic
+  if (text.size() <= kMost && text_width_px(text, size_px) <= width_px) return std::string(text);
+  std::string kept(text.substr(0, kMost));
   while (!kept.empty() && text_width_px(kept + "...", size_px) > width_px) {
     do kept.pop_back();
     while (!kept.empty() && (static_cast<unsigned char>(kept.back()) & 0xC0U) == 0x80);

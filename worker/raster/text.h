@@ -18,7 +18,7 @@ double text_width_px(std::string_view text, double size_px);
 void draw_text(Image& image, double x, double y, std::string_view text, double size_px, Colour colour,
                Align align = Align::kLeft);
 
-// The text, or its beginning with "..." where it is wider.
+// The text, or its beginning with "..." where it is wider or longer than 1000 bytes.
 std::string fit_text(std::string_view text, double size_px, double width_px);
 
 }  // namespace skinframe

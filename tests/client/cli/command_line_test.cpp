@@ -27,11 +27,5 @@ TEST(LocalVerbs, AreToldFromFileNamesAndFromOtherVerbs) {
 
 TEST(LocalVerbs, HelpIsOurs) { EXPECT_FALSE(local_verb({"check", "--help"}).has_value()); }
 
-TEST(UnbuiltVerbs, AreKnownByName) {
-  EXPECT_EQ(unbuilt_verb({"render", "dir"}), "render");
-  EXPECT_EQ(unbuilt_verb({"--json", "render"}), "render");
-  EXPECT_FALSE(unbuilt_verb({"download", "render"}).has_value());
-}
-
 }  // namespace
 }  // namespace skinframe::client

@@ -60,13 +60,12 @@ TEST_F(Program, AloneItTeachesAndSaysWrongUsage) {
 TEST_F(Program, EveryVerbTeachesWithAnExample) {
   for (const char* verb :
        {"run", "submit", "watch", "get", "list", "cancel", "download", "printers", "materials", "delete",
-        "sample", "check", "solve-frame", "calibrate", "doctor", "completion"}) {
+        "sample", "check", "solve-frame", "calibrate", "render", "doctor", "completion"}) {
     const Ran ran = run(std::string(verb) + " --help");
     EXPECT_EQ(ran.code, 0) << verb;
     EXPECT_THAT(ran.out, HasSubstr(std::string("  skinframe ") + verb)) << verb;
   }
   EXPECT_EQ(run("--version").code, 0);
-  EXPECT_THAT(run("--help").out, Not(HasSubstr("render")));
 }
 
 TEST_F(Program, BashCompletesVerbsOptionsAndNothingThatIsNone) {
@@ -112,12 +111,6 @@ TEST_F(Program, WrongUsageIsTwoAndNamesTheWord) {
   EXPECT_EQ(run("run " + mesh() + " --printer p --out o --up sideways").code, 2);
   EXPECT_EQ(run("submit " + mesh() + " --printer p --out o").code, 2);
   EXPECT_EQ(run("list --state lost").code, 2);
-}
-
-TEST_F(Program, WhatIsNotBuiltSaysSo) {
-  const Ran ran = run("render dir");
-  EXPECT_EQ(ran.code, 2);
-  EXPECT_THAT(ran.err, HasSubstr("`render` is not built yet"));
 }
 
 TEST_F(Program, AMissingMeshIsThreeAndNamesIt) {

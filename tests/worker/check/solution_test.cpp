@@ -102,6 +102,33 @@ TEST_F(SolutionTest, AnHonestResultHoldsInEveryClaimAndEachLieIsDenied) {
               Contains(::testing::HasSubstr("44 is not a node")));
 }
 
+TEST_F(SolutionTest, TheStrutsOfEachStageAreJudged) {
+  solve(standing_tripod());
+  using ::testing::Contains;
+  const auto sizes = [](json& r, const char* stage, const char* which) -> json& {
+    return r["strut_sizes"][stage][which];
+  };
+  EXPECT_THAT(result_denied([&](json& r) { sizes(r, "size", "radii_mm")[0] = 0.9; }),
+              Contains("struts of each stage"));  // no longer the reported volume
+  EXPECT_THAT(result_denied([&](json& r) { sizes(r, "topology", "lengths_mm").erase(0); }),
+              Contains("struts of each stage"));
+  EXPECT_THAT(report_denied([](json& f) { f["counts"]["initial"]["struts"] = 4; }),
+              Contains("struts of each stage"));
+  EXPECT_THAT(report_denied([](json& f) { f["volumes_mm3"]["initial"] = 1; }),
+              Contains("struts of each stage"));
+  EXPECT_THAT(result_denied([&](json& r) {
+                sizes(r, "initial", "lengths_mm")[1] =
+                    1.001 * sizes(r, "initial", "lengths_mm")[1].get<double>();
+              }),
+              Contains("sizing moves no node"));
+  EXPECT_THAT(result_denied([&](json& r) {
+                for (json& radius : sizes(r, "initial", "radii_mm")) radius = 5;
+              }),
+              Contains("radii of each stage"));
+  EXPECT_THAT(result_denied([](json& r) { r["given"]["nodes"][3][2] = 99; }),
+              Contains("sizing moves no node"));
+}
+
 TEST_F(SolutionTest, LowerBoundsAreVerifiedForTheFrameThatWasGiven) {
   solve(standing_tripod());
   using ::testing::Contains;

@@ -52,6 +52,35 @@ TEST(ReadPly, ABinaryNanIsNamedByItsVertex) {
   EXPECT_THAT(error_of(bytes), HasSubstr("vertex 2: coordinate y is not finite"));
 }
 
+// The tetrahedron with a colour at each corner, an unused vertex first.
+std::string coloured_ply(const std::string& type) {
+  std::string text = with(ascii_ply(), "vertex 4", "vertex 5");
+  for (const char* name : {"blue", "red", "green"})
+    text = with(text, "element face", "property " + type + " " + name + "\nelement face");
+  text = with(text, "end_header\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n",
+              "end_header\n9 9 9 7 7 7\n0 0 0 3 1 2\n1 0 0 6 4 5\n0 1 0 255 0 0\n0 0 1 0 0 0\n3 1 3 2\n3 1 2 "
+              "4\n3 1 4 "
+              "3\n3 2 3 4\n");
+  return text;
+}
+
+TEST(ReadPly, ColoursOfVerticesComeWithTheVerticesThatAreUsed) {
+  const auto file = read_bytes(coloured_ply("uchar"));
+  ASSERT_TRUE(file.ok());
+  using Colours = std::vector<std::array<std::uint8_t, 3>>;
+  EXPECT_EQ(file->vertex_colours, (Colours{{1, 2, 3}, {4, 5, 6}, {0, 0, 255}, {0, 0, 0}}));
+  EXPECT_TRUE(read_bytes(coloured_ply("float"))->vertex_colours.empty());
+  EXPECT_TRUE(read_bytes(binary_ply<float>(false))->vertex_colours.empty());  // red alone
+  EXPECT_THAT(error_of(with(coloured_ply("uchar"), "255 0 0", "256 0 0")), HasSubstr("256 is no colour"));
+}
+
+TEST(ReadPly, CommentsComeAlongButNotWithoutEnd) {
+  EXPECT_THAT(read_bytes(ascii_ply())->comments, ElementsAre("four corners"));
+  std::string many;
+  for (int k = 0; k < 1000; ++k) many += "comment again\n";
+  EXPECT_EQ(read_bytes(with(ascii_ply(), "comment four corners\n", many))->comments.size(), 32U);
+}
+
 TEST(ReadPly, ElementsWithoutPropertiesCostNothingHoweverMany) {
   expect_tetrahedron(read_bytes(with(ascii_ply(), "element face", "element ghost 4000000000\nelement face")),
                      "PLY");
