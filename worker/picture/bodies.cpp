@@ -39,6 +39,20 @@ Camera camera_in(const Place& place, const View& view, const std::vector<Eigen::
   return fit_camera(view.axes, points_mm, margin_mm, place.width, place.height);
 }
 
+// What is left of the mesh has to fit: its vertices, and where its edges meet the cut.
+std::vector<Eigen::Vector3d> left_by(const TriangleMesh& mesh, const CutPlane& cut) {
+  const auto beyond = [&](int v) { return cut.normal.dot(mesh.vertices[v]) - cut.offset_mm; };
+  std::vector<Eigen::Vector3d> left;
+  for (const auto& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const double from = beyond(t[k]), to = beyond(t[(k + 1) % 3]);
+      const Eigen::Vector3d &a = mesh.vertices[t[k]], &b = mesh.vertices[t[(k + 1) % 3]];
+      if (from <= 0) left.push_back(a);
+      if ((from < 0 && to > 0) || (from > 0 && to < 0)) left.emplace_back(a + (b - a) * (from / (from - to)));
+    }
+  return left;
+}
+
 }  // namespace
 
 Image frame_picture(const DrawnFrame& frame, const std::string& title, int side_px) {
@@ -79,11 +93,8 @@ Image cutaway_picture(const TriangleMesh& mesh, const std::string& title, int si
       false);
   const Place place = sheet.body();
   const View view = view_of(mesh.vertices);
-  // Only what is left has to fit.
-  std::vector<Eigen::Vector3d> left;
-  for (const Eigen::Vector3d& p : mesh.vertices)
-    if (view.middle.normal.dot(p) <= view.middle.offset_mm) left.push_back(p);
-  Scene scene(place.width, place.height, camera_in(place, view, left, 0.01 * size.norm()), view.middle);
+  Scene scene(place.width, place.height,
+              camera_in(place, view, left_by(mesh, view.middle), 0.01 * size.norm()), view.middle);
   scene.add_mesh(mesh, kOutside, kInside);
   scene.close_cut(kCut);
   sheet.image().paste(scene.picture(kWhite), place.x, place.y);

@@ -24,7 +24,8 @@ Sheet::Sheet(int width_px, int height_px, const std::string& title, const std::s
   draw_text(image_, margin, 3.0 * text_px_, fit_text(below, text_px_, wide), text_px_, kSoft);
   const int top = static_cast<int>(3.6 * text_px_), edge = static_cast<int>(margin / 2);
   const int bar = with_bar ? static_cast<int>(6.5 * text_px_) : 0;
-  body_ = {edge, top, std::max(1, width_px - 2 * edge - bar), std::max(1, height_px - top - edge)};
+  body_ = {edge, top, std::max(1, width_px - 2 * edge - bar),
+           std::max(1, height_px - top - static_cast<int>(2.2 * text_px_))};
 }
 
 void Sheet::colour_bar(double low, double high, const std::string& unit) {

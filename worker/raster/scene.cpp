@@ -15,7 +15,7 @@ constexpr int kSamples = 2;  // along each side of a pixel
 constexpr float kNothing = -std::numeric_limits<float>::infinity();
 constexpr std::int64_t kGrid = 256;  // steps of a rounded corner to a sample
 constexpr double kFurthestPx = 1e6;  // corners further out are drawn in to here, so that products fit
-constexpr double kCrease = 0.7;      // cosine: smooth shading ends at edges sharper than 45 degrees
+constexpr double kCrease = 0.85;     // cosine: a corner is smooth where its faces lean no more than this
 
 // A key light from the upper left before the object, a weaker one from the right, and what comes from
 // everywhere.
