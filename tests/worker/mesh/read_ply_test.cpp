@@ -75,7 +75,7 @@ TEST(ReadPly, ColoursOfVerticesComeWithTheVerticesThatAreUsed) {
 }
 
 TEST(ReadPly, CommentsComeAlongButNotWithoutEnd) {
-  EXPECT_THAT(read_bytes(ascii_ply())->comments, testing::ElementsAre("four corners"));
+  EXPECT_THAT(read_bytes(ascii_ply())->comments, ::testing::ElementsAre("four corners"));
   std::string many;
   for (int k = 0; k < 1000; ++k) many += "comment again\n";
   EXPECT_EQ(read_bytes(with(ascii_ply(), "comment four corners\n", many))->comments.size(), 32U);
