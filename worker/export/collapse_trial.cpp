@@ -28,7 +28,7 @@ double roundness(const Corners& p, double twice_area) {
 CollapseTrial::CollapseTrial(const ThinningState& state, const ThinningBlock& block,
                              const BlockLimits& limits, BlockMesh& mesh)
     : state_(state), limits_(limits), mesh_(mesh) {
-  if (limits_.is_bounded) fill_grid(block.box);
+  if (limits_.is_bounded || limits_.is_clear) fill_grid(block.box);
 }
 
 void CollapseTrial::fill_grid(const Eigen::AlignedBox3d& box) {
@@ -56,7 +56,7 @@ bool CollapseTrial::holds(int u, int v, const Eigen::Vector3d& place) {
       if (mesh_.triangle(t)[k] == u || mesh_.triangle(t)[k] == v) p[k] = place;
     new_.push_back({t, p, box_of(p), normal_of(p)});
   }
-  return keeps_shape() && (!limits_.is_bounded || (keeps_points(u, place) && keeps_clear(u, v)));
+  return keeps_shape() && (!limits_.is_bounded || keeps_points(u, place)) && (!grid_ || keeps_clear(u, v));
 }
 
 void CollapseTrial::carry_out(int u, int v, const Eigen::Vector3d& place) {

@@ -14,6 +14,7 @@
 #include <cmath>
 #include <new>
 
+#include "worker/export/fill_slivers.h"
 #include "worker/export/keep_wall.h"
 #include "worker/export/strut_level_set.h"
 #include "worker/export/thin_out.h"
@@ -129,23 +130,26 @@ void drop_small_shells(TriangleMesh& cavity, double smallest_mm3, PrintableMesh&
   drop_unused_vertices(cavity);
 }
 
-Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Frame& frame,
-                            const std::vector<double>& radii_mm, const ExportOptions& options,
-                            const RunContext& context) {
-  const auto voxel = choose_voxel(options, skin, radii_mm, surface_area(mesh));
-  if (!voxel) return voxel.error();
-  PrintableMesh result;
-  result.voxel_mm = *voxel;
+struct Cavity {
+  TriangleMesh surface;  // outward
+  int crossings_left = 0;
+};
+
+// careful: collapses that would make triangles meet are refused, which takes half as long again.
+Result<Cavity> make_cavity(const TriangleMesh& mesh, const Skin& skin, const Frame& frame,
+                           const std::vector<double>& radii_mm, const ExportOptions& options, bool careful,
+                           const RunContext& context, PrintableMesh& result) {
   Steps steps(&result.seconds);
-  const double band = kBandVoxels * *voxel;
-  auto cavity_grid = m1_level_set(mesh, skin, *voxel, band);
+  const double voxel = result.voxel_mm, band = kBandVoxels * voxel;
+  auto cavity_grid = m1_level_set(mesh, skin, voxel, band);
   if (context.cancelled()) return cancelled_error();
   steps.done("offset");
-  auto struts = strut_level_set(frame, radii_mm, *voxel, band);
+  auto struts = strut_level_set(frame, radii_mm, voxel, band);
   if (context.cancelled()) return cancelled_error();
   openvdb::tools::csgDifference(*cavity_grid, *struts);
   struts.reset();
   return_free_memory();
+  fill_slivers(*cavity_grid);
   steps.done("struts");
   TriangleMesh cavity = iso_surface(*cavity_grid, 0.0);
   cavity_grid.reset();
@@ -157,15 +161,16 @@ Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Fr
   if (context.cancelled()) return cancelled_error();
   steps.done("surface");
   if (manifold && options.max_triangles > 0) {
-    thin_out(cavity,
-             {.triangles = options.max_triangles,
-              .max_deviation_mm = kThinningInVoxels * *voxel,
-              .is_bounded = false},
-             context);
+    ThinningOptions thinning;
+    thinning.triangles = options.max_triangles;
+    thinning.max_deviation_mm = kThinningInVoxels * voxel;
+    thinning.is_bounded = false;
+    thinning.is_clear = careful;
+    thin_out(cavity, thinning, context);
   }
   steps.done("thin_out");
   const TriangleTree body(mesh);
-  keep_wall(cavity, body, skin, *voxel);
+  keep_wall(cavity, body, skin, voxel);
   manifold = manifold && mend_edges(cavity).manifold;  // places rounded to float may fall together
   if (context.cancelled()) return cancelled_error();
   steps.done("keep_wall");
@@ -173,23 +178,45 @@ Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Fr
   // the wall gives way there round by round, to less than half a voxel.
   const auto hold = [&](Eigen::Vector3d& vertex, int round) {
     const double slack = kWallSlackInVoxels * (2.0 + 2.0 * round / kMostUntanglingRounds);
-    const double least = skin.thickness_mm - slack * *voxel;
+    const double least = skin.thickness_mm - slack * voxel;
     keep_wall(vertex, body, least, least);
   };
-  result.crossings_left = untangle(cavity, context, hold).crossings_left;
+  const int crossings_left = untangle(cavity, context, hold).crossings_left;
   if (context.cancelled()) return cancelled_error();
   steps.done("untangle");
   if (!manifold || count_bad_edges(cavity) > 0)
     return internal_error("the boundary of the cavity is not closed: try another --voxel");
-  result.cavity_volume_mm3 = signed_volume(cavity);
+  return Cavity{std::move(cavity), crossings_left};
+}
+
+Result<PrintableMesh> merge(const TriangleMesh& mesh, const Skin& skin, const Frame& frame,
+                            const std::vector<double>& radii_mm, const ExportOptions& options,
+                            const RunContext& context) {
+  const auto voxel = choose_voxel(options, skin, radii_mm, surface_area(mesh));
+  if (!voxel) return voxel.error();
+  PrintableMesh result;
+  Cavity cavity;
+  for (const bool careful : {false, true}) {
+    result.pockets = result.pockets_filled = 0;
+    result.voxel_mm = *voxel;
+    cavity = {};  // before the next is made
+    auto made = make_cavity(mesh, skin, frame, radii_mm, options, careful, context, result);
+    if (!made) return made.error();
+    cavity = std::move(made).value();
+    if (cavity.crossings_left == 0) break;
+  }
+  result.crossings_left = cavity.crossings_left;
+  result.cavity_volume_mm3 = signed_volume(cavity.surface);
   result.volume_mm3 = signed_volume(mesh) - result.cavity_volume_mm3;
 
+  Steps steps(&result.seconds);
   result.mesh = mesh;
   for (auto& v : result.mesh.vertices) v = v.cast<float>().cast<double>();
   const int first = static_cast<int>(result.mesh.vertices.size());
-  result.mesh.vertices.insert(result.mesh.vertices.end(), cavity.vertices.begin(), cavity.vertices.end());
-  result.mesh.triangles.reserve(result.mesh.triangles.size() + cavity.triangles.size());
-  for (const auto& t : cavity.triangles)
+  result.mesh.vertices.insert(result.mesh.vertices.end(), cavity.surface.vertices.begin(),
+                              cavity.surface.vertices.end());
+  result.mesh.triangles.reserve(result.mesh.triangles.size() + cavity.surface.triangles.size());
+  for (const auto& t : cavity.surface.triangles)
     result.mesh.triangles.push_back({first + t[0], first + t[2], first + t[1]});
   result.crossings_left += count_cuts_of_surface(result.mesh, mesh.triangles.size(), skin);
   steps.done("cuts");

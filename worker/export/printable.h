@@ -3,8 +3,9 @@
 //
 // The outer surface is M's own triangles, untouched and first in the list; behind them stands the cavity's
 // boundary, reversed, taken from one level set max(distance to M + h_S, -(distance to the nearest strut axis
-// - r)); where fine detail is smoothed, M1 is what lies deeper than h_S below both M and the copy. So struts are clipped to M1, nothing ever comes nearer than about h_S to M from within, and parts
-// too thin for a cavity are solid.
+// - r)); where fine detail is smoothed, M1 is what lies deeper than h_S below both M and the copy. So struts
+// are clipped to M1, nothing ever comes nearer than about h_S to M from within, and parts too thin for a
+// cavity are solid, as are gaps narrower than a voxel between a strut and the wall or another strut.
 //
 // Guarantees, on the coordinates rounded to float as a binary STL stores them:
 //  1. Every edge has exactly two triangles, in opposite directions (when that holds for M).

@@ -41,7 +41,8 @@ struct BlockLimits {
   // Of every point from the triangles that took the place of its own, and of the corners and middles of
   // these from the surface as it was, as far as the points about tell or the tree does.
   double deviation_mm = 0.0;
-  bool is_bounded = true;     // false: neither the deviation is looked at nor whether triangles meet
+  bool is_bounded = true;     // false: neither the deviation is looked at nor whether triangles meet,
+  bool is_clear = false;      // but for the latter where this is true
   std::size_t triangles = 0;  // no fewer of `own` shall be left
 };
 

@@ -163,9 +163,9 @@ Thinned thin_out(TriangleMesh& mesh, const ThinningOptions& options, const RunCo
     link_points(state);
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
       const auto least = static_cast<std::size_t>(share * static_cast<double>(blocks[b].own.size()));
-      thin_block(
-          state, blocks[b],
-          {of_deviation * options.max_deviation_mm, options.max_deviation_mm, options.is_bounded, least});
+      thin_block(state, blocks[b],
+                 {of_deviation * options.max_deviation_mm, options.max_deviation_mm, options.is_bounded,
+                  options.is_clear, least});
     });
     drop_gone(state);
   }

@@ -27,6 +27,7 @@ struct ThinningOptions {
   // False: only the root of the quadric error stays below the deviation. Neither points are followed then nor
   // is it asked whether triangles meet: several times as fast, for small steps.
   bool is_bounded = true;
+  bool is_clear = false;    // true: whether triangles meet is asked all the same
   int exact_vertices = 0;   // the first so many vertices never move, they only go,
   bool exact_stay = false;  // and not even that
   // The mesh as it was. With it new triangles are held to it exactly wherever the points leave doubt; the

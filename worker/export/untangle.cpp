@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <map>
 #include <unordered_set>
+#include <utility>
+#include <vector>
 
 #include "worker/export/crossings.h"
 
@@ -92,13 +94,21 @@ Untangling untangle(TriangleMesh& mesh, const RunContext& context, const Hold& h
   Untangling result;
   Pairs pairs = crossing_triangles(mesh);
   result.crossings_found = static_cast<int>(pairs.size());
+  // Rounds may make more than they mend; what counts is the best of them.
+  std::size_t fewest = pairs.size();
+  std::vector<Eigen::Vector3d> best;
+  if (fewest > 0) best = mesh.vertices;
   for (int round = 0; round < kMostUntanglingRounds && !pairs.empty() && !context.cancelled(); ++round) {
     std::vector<char> marked = corners_of(mesh, pairs);
     for (int ring = 0; ring < round / kRoundsARing; ++ring) add_ring(mesh, marked);
     relax(mesh, marked, hold, round);
     pairs = crossing_triangles(mesh, triangles_near(mesh, marked));
+    if (pairs.size() >= fewest) continue;
+    fewest = pairs.size();
+    best = mesh.vertices;
   }
-  result.crossings_left = static_cast<int>(pairs.size());
+  if (pairs.size() > fewest) mesh.vertices = std::move(best);
+  result.crossings_left = static_cast<int>(fewest);
   return result;
 }
 

@@ -2,8 +2,9 @@
 // Takes out the few places where a level set's surface, thinned and rounded to floats, cuts itself.
 //
 // The corners of triangles that cross go half way to the mean of their neighbours, round by round and in a
-// growing neighbourhood, until none cross. A corner moves by less than its edges are long; the connections
-// stay, so a closed manifold stays one. Coordinates stay exact floats.
+// growing neighbourhood, until none cross; where that does not do, the round that left the fewest counts. A
+// corner moves by less than its edges are long; the connections stay, so a closed manifold stays one.
+// Coordinates stay exact floats.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/skin/level_set.h"
 
+#include <openvdb/tools/ChangeBackground.h>
+#include <openvdb/tools/Composite.h>
+#include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/VolumeToMesh.h>
 
@@ -10,6 +13,26 @@ namespace {
 // A flat wall that runs through the grid's points leaves there the sign to rounding, and its surface becomes
 // a crumpled sheet of triangles back to back. A thousandth of a voxel deeper it does not.
 constexpr double kOffLatticeInVoxels = 1e-3;
+constexpr double kHiddenInVoxels = 1.5;  // below the surface, of a point of it
+
+// Triangles that the grid does not see: OpenVDB takes surface for a fold within the material, and drops it,
+// where no point of the grid about it is outside. So it is with a void narrower than a voxel.
+std::vector<openvdb::Vec3I> hidden_triangles(const openvdb::FloatGrid& grid,
+                                             const std::vector<openvdb::Vec3s>& points,
+                                             const std::vector<openvdb::Vec3I>& triangles) {
+  std::vector<openvdb::Vec3I> hidden;
+  const double deepest = -kHiddenInVoxels * grid.voxelSize()[0];
+  const auto is_deep = [&](const openvdb::Vec3d& p) {
+    return openvdb::tools::BoxSampler::sample(grid.tree(), grid.transform().worldToIndex(p)) < deepest;
+  };
+  for (const auto& t : triangles) {
+    const openvdb::Vec3d a = points[t[0]], b = points[t[1]], c = points[t[2]], middle = (a + b + c) / 3.0;
+    if (is_deep(middle) || is_deep(0.5 * (middle + a)) || is_deep(0.5 * (middle + b)) ||
+        is_deep(0.5 * (middle + c)))
+      hidden.push_back(t);
+  }
+  return hidden;
+}
 
 }  // namespace
 
@@ -23,8 +46,16 @@ openvdb::FloatGrid::Ptr distance_grid(const TriangleMesh& mesh, double voxel_mm,
   triangles.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
   const auto transform = openvdb::math::Transform::createLinearTransform(voxel_mm);
-  return openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
+  auto grid = openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
       *transform, points, triangles, {}, static_cast<float>(outer_voxels), static_cast<float>(inner_voxels));
+  const auto hidden = hidden_triangles(*grid, points, triangles);
+  if (hidden.empty()) return grid;
+  auto beside = openvdb::tools::meshToUnsignedDistanceField<openvdb::FloatGrid>(
+      *transform, points, hidden, {}, static_cast<float>(inner_voxels));
+  for (auto it = beside->beginValueOn(); it; ++it) it.setValue(-*it);
+  openvdb::tools::changeBackground(beside->tree(), -static_cast<float>(inner_voxels * voxel_mm));
+  openvdb::tools::compMax(*grid, *beside);
+  return grid;
 }
 
 TriangleMesh iso_surface(const openvdb::FloatGrid& grid, double iso_mm) {

@@ -10,6 +10,8 @@
 namespace skinframe {
 
 // Distance to a closed outward mesh, negative inside; true within the two bands (in voxels), clamped beyond.
+// The walls of voids too narrow for the grid, and folds within the material, count: about them the distance
+// is that to them, negative.
 openvdb::FloatGrid::Ptr distance_grid(const TriangleMesh& mesh, double voxel_mm, double outer_voxels,
                                       double inner_voxels);
 

@@ -8,10 +8,12 @@
 #include <filesystem>
 
 #include "tests/worker/skin/bodies.h"
+#include "worker/export/crossings.h"
 #include "worker/frame/sample_frame.h"
 #include "worker/mesh/read_mesh.h"
 #include "worker/mesh/write_stl.h"
 #include "worker/skin/mend_edges.h"
+#include "worker/skin/triangle_tree.h"
 
 namespace skinframe {
 namespace {
@@ -132,6 +134,25 @@ TEST(MergeSolid, FillsPocketsBelowTheLimitAndOnlyThose) {
       merged(body, skin, frame, {radius}, {.voxel_mm = 0.3, .smallest_pocket_mm3 = larger});
   EXPECT_EQ(none.pockets + none.pockets_filled, 2);
   EXPECT_GE(none.pockets_filled, 1);
+}
+
+// A strut that comes up to the skin's inside at a small angle leaves a gap from nothing to a voxel and more.
+TEST(MergeSolid, AStrutCloseBelowTheSkinIsRoundAndCutsNothing) {
+  const TriangleMesh body = bodies::box(60, 20, 20);
+  Frame frame;
+  frame.nodes_mm = {{5, 10, 18.5}, {55, 10, 18.0}, {5, 4, 18.45}, {55, 9, 18.4}};
+  frame.struts = {{0, 1, false}, {2, 3, false}};
+  const PrintableMesh printable = merged(body, skin_of(body), frame, {0.5, 0.5}, {.max_triangles = 4000});
+  EXPECT_EQ(printable.crossings_left, 0);
+  EXPECT_TRUE(crossing_triangles(printable.mesh).empty());
+  TriangleMesh cavity = printable.mesh;
+  cavity.triangles.erase(cavity.triangles.begin(), cavity.triangles.begin() + body.triangles.size());
+  const TriangleTree hollow(cavity);
+  for (const auto& strut : frame.struts) {
+    const Eigen::Vector3d &a = frame.nodes_mm[strut.a], &b = frame.nodes_mm[strut.b];
+    for (double t = 0.05; t < 0.96; t += 0.05)
+      EXPECT_GT(hollow.distance_mm(a + t * (b - a)), 0.5 - 0.5 * printable.voxel_mm) << t;
+  }
 }
 
 TEST(MergeSolid, SameAtAnyThreadCount) {

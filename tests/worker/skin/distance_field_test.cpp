@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <numbers>
 
 #include "tests/worker/skin/bodies.h"
 #include "worker/skin/build_skin.h"
@@ -43,6 +44,25 @@ TEST_F(SphereField, GradientPointsOutward) {
     EXPECT_NEAR(field_->gradient(at_radius(r)).dot(Eigen::Vector3d(0.36, 0.48, 0.8)), 1.0, 0.05)
         << "radius " << r;
   }
+}
+
+// A tenth of a millimetre wide, where a voxel has three: no point of the grid need be in it.
+TEST(DistanceField, AVoidNarrowerThanAVoxelHasWallsAllTheSame) {
+  TriangleMesh body = bodies::box(20, 20, 20);
+  const TriangleMesh gap = bodies::box(10, 10, 0.1);
+  const int first = static_cast<int>(body.vertices.size());
+  for (const auto& v : gap.vertices) body.vertices.push_back(v + Eigen::Vector3d(5, 5, 10.02));
+  for (const auto& [a, b, c] : gap.triangles) body.triangles.push_back({first + a, first + c, first + b});
+  RunContext context;
+  const auto skin = build_skin(body, {.thickness_mm = 1.0}, context);
+  ASSERT_TRUE(skin.ok()) << skin.error().message;
+  for (const double above : {0.2, 0.5, 0.9}) {
+    EXPECT_NEAR(skin->field.at({10, 10, 10.12 + above}), -above, 0.15) << above;
+    EXPECT_NEAR(skin->field.at({9, 11, 10.02 - above}), -above, 0.15) << above;
+  }
+  // Steiner: the gap, its sides, quarters of cylinders about its edges, a ball.
+  const double walled = 10.0 + 204.0 + std::numbers::pi / 4 * 80.4 + 4.0 / 3.0 * std::numbers::pi;
+  EXPECT_NEAR(skin->cavity_volume_mm3, 18.0 * 18.0 * 18.0 - walled, 40.0);
 }
 
 TEST(DistanceField, MadeOfNothingIsZeroEverywhere) {
