@@ -29,6 +29,19 @@ TEST(ReadPly, CountsBeyondTheFileAreRefusedBeforeMemoryIsTaken) {
   EXPECT_THAT(error_of(with(ascii_ply(), "vertex 4", "vertex 99999999999999999999")), HasSubstr("line 4"));
 }
 
+TEST(ReadPly, AListOfHugeLengthIsRefusedBeforeMemoryIsTaken) {
+  EXPECT_THAT(error_of(with(ascii_ply(), "3 1 2 3\n", "4294967295 1 2 3\n")),
+              HasSubstr("4294967295 corners are more than the limit"));
+  std::string bytes =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uint uint vertex_indices\nend_header\n";
+  bytes.append(12, '\0');
+  bytes.append(4, '\xff');
+  EXPECT_THAT(error_of(bytes), HasSubstr("4294967295 corners are more than the limit"));
+  const std::string read_over = with(bytes, "vertex_indices", "marks");
+  EXPECT_FALSE(read_bytes(read_over).ok());
+}
+
 TEST(ReadPly, DefectsAreNamed) {
   EXPECT_THAT(error_of(with(ascii_ply(), "3 1 2 3\n", "3 1 2 4\n")),
               HasSubstr("line 18: index 4 of 4 vertices"));
