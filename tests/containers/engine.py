@@ -2,6 +2,7 @@
 """podman or docker, whichever can run containers here, and the images of deploy/Dockerfile built by it."""
 from __future__ import annotations
 
+import atexit
 import json
 import os
 import pathlib
@@ -77,6 +78,7 @@ class Engine:
         if "CONTAINERS_CONF" not in os.environ:
             conf = pathlib.Path(tempfile.gettempdir()) / f"skinframe-containers-{os.getpid()}.conf"
             conf.write_text(CONTAINERS_CONF)
+            atexit.register(conf.unlink, missing_ok=True)
             os.environ["CONTAINERS_CONF"] = str(conf)
         info = run(["podman", "info", "--format", "json"], check=False, timeout=60)
         if info.returncode != 0:

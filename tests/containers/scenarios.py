@@ -76,8 +76,8 @@ class Running(stage.Test):
         self.assertEqual([event["state"] for event in stage.farm.events(job_id) if "state" in event], states)
         self.assertEqual(stage.farm.job(job_id), done)
         after = stage.farm.metrics()
-        for name, more in (('skinframe_rpc_seconds_count{method="skinframe.v1.WorkerService/Complete",code="ABORTED"}', 1),
-                           ("skinframe_lease_expiries_total", 1), ("skinframe_requeued_total", 1),
+        refused = 'skinframe_rpc_seconds_count{method="skinframe.v1.WorkerService/Complete",code="ABORTED"}'
+        for name, more in ((refused, 1), ("skinframe_lease_expiries_total", 1), ("skinframe_requeued_total", 1),
                            ('skinframe_jobs_ended_total{state="SUCCEEDED",reason="NONE"}', 1)):
             self.assertEqual(self.of(after, name) - self.of(before, name), more, name)
 
@@ -155,11 +155,11 @@ class Faults(Running):
     def test_a_watch_sees_every_event_over_a_restart_of_the_server(self):
         job = stage.farm.submit(*STEADY)
         self.worker_of(job)
-        watch = stage.farm.watch(job)
-        lines = [watch.stdout.readline()]
-        stage.engine("restart", "--time", "10", stage.farm.server)
-        lines += list(watch.stdout)
-        self.assertEqual(watch.wait(60), 0, watch.stderr.read())
+        with stage.farm.watch(job) as watch:
+            lines = [watch.stdout.readline()]
+            stage.engine("restart", "--time", "10", stage.farm.server)
+            lines += list(watch.stdout)
+            self.assertEqual(watch.wait(60), 0, watch.stderr.read())
         numbers = [json.loads(line)["sequence"] for line in lines]
         self.assertEqual(numbers, list(range(1, len(numbers) + 1)))
         self.expect_done(job)
