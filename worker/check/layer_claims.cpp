@@ -14,8 +14,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPitchInRadii = 1.0;       // of the lattice and the layers, in the least radius
-constexpr double kMostCells = 4e6;          // of a layer: a coarser lattice is taken for larger bodies
+constexpr double kPitchInRadii = 1.0;  // of the lattice and the layers, in the least radius
+constexpr double kMostCells = 4e6;     // of a layer: a coarser lattice is taken for larger bodies
+constexpr double kMostCellsInAll = 3e8;
+constexpr double kMostLayers = 4000;  // and cells a side
+constexpr double kLeastPitchMm = 1e-3;
+constexpr double kFlattestDegrees = 80;     // more is taken for this
 constexpr double kDiagonal = 1.5;           // cells; from a cell to the next ones, and some room
 constexpr double kLeastSpotInStruts = 2.0;  // smaller: patches that a level strut's underside comes up in
 constexpr double kLeastFilled = 0.7;        // of the volume: layers that are empty prove nothing
@@ -165,11 +169,13 @@ void claim_layers(const ExportedPrinter& result, Verdict* verdict) {
   }
   const Vector3d extent = box.extent();
   const double pitch =
-      std::max(kPitchInRadii * result.eta_mm, std::sqrt(extent.x() * extent.y() / kMostCells));
+      std::max({kPitchInRadii * result.eta_mm, std::sqrt(extent.x() * extent.y() / kMostCells),
+                std::cbrt(extent.prod() / kMostCellsInAll), extent.maxCoeff() / kMostLayers, kLeastPitchMm});
   const Lattice lattice(box, pitch);
-  const double first = supports.plate_z_mm + 0.5 * pitch;
+  const double first = std::max(supports.plate_z_mm, box.min.z()) + 0.5 * pitch;
   Slices body(*result.merged, lattice, first, pitch), outside(supports.external_mesh, lattice, first, pitch);
-  const double angle = supports.self_supporting_angle_deg * std::numbers::pi / 180;
+  const double angle =
+      std::clamp(supports.self_supporting_angle_deg, 0.0, kFlattestDegrees) * std::numbers::pi / 180;
   const double reach =
       std::max(std::tan(angle), kDiagonal);  // in cells: a layer is as high as a cell is wide
   const int around = static_cast<int>(std::ceil(reach));

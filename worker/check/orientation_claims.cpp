@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <random>
+#include <stdexcept>
 
 #include "worker/check/claims.h"
 
@@ -17,7 +18,8 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr int kPoints = 30'000;
-constexpr int kMostColumns = 256;       // a side, of the lattice that triangles are filed in
+constexpr int kMostColumns = 256;  // a side, of the lattice that triangles are filed in
+constexpr std::size_t kMostFiled = 100'000'000;
 constexpr double kHeldByPlateMm = 1.0;  // beyond the skin: the contact tolerance
 constexpr double kShare = 0.1;          // what two ways of spreading points may differ by
 constexpr double kLeastMm3 = 1.0;       // and what that is of nothing
@@ -30,6 +32,7 @@ class Columns {
   explicit Columns(const TriangleMesh& mesh) : mesh_(mesh), box_(bounding_box(mesh)) {
     side_mm_ = std::max(box_.extent().head<2>().maxCoeff(), 1e-9) / kMostColumns;
     filed_.resize(static_cast<std::size_t>(kMostColumns + 1) * (kMostColumns + 1));
+    std::size_t filed = 0;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
       const auto& [a, b, c] = mesh.triangles[t];
       const Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
@@ -37,6 +40,9 @@ class Columns {
       for (int y = column(low.y(), 1); y <= column(high.y(), 1); ++y)
         for (int x = column(low.x(), 0); x <= column(high.x(), 0); ++x)
           filed_[static_cast<std::size_t>(y) * (kMostColumns + 1) + x].push_back(static_cast<int>(t));
+      const auto wide = static_cast<std::size_t>(column(high.x(), 0) - column(low.x(), 0) + 1);
+      filed += wide * static_cast<std::size_t>(column(high.y(), 1) - column(low.y(), 1) + 1);
+      if (filed > kMostFiled) throw std::length_error("its triangles are too large and too many");
     }
   }
 

@@ -67,6 +67,18 @@ TEST(LayerClaim, ASupportOutsideHoldsWhatWouldStartInTheAir) {
   EXPECT_FALSE(holds(body, frustum(0.6, 0, 0.6, 4.5, 12))) << "it stands beside";
 }
 
+TEST(LayerClaim, FiguresThatMakeNoSenseTakeNoMoreThanTheOthers) {
+  ExportedPrinter result;  // a plate far below, all angles print
+  result.eta_mm = 0.4;
+  result.merged = frustum(5, 0, 5, 10);
+  result.supports.emplace();
+  result.supports->self_supporting_angle_deg = 90;
+  result.supports->plate_z_mm = -1e9;
+  Verdict verdict;
+  claim_layers(result, &verdict);
+  EXPECT_FALSE(verdict.claims.front().holds) << "it stands on nothing";
+}
+
 TEST(LayerClaim, ACavityIsNoMaterial) {
   // A box of 20 mm with a cavity of 18: a block that hangs free in it starts in the air.
   TriangleMesh body = frustum(10, 0, 10, 20);
