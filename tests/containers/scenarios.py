@@ -205,7 +205,7 @@ class Memory(Running):
             self.expect_done(stage.farm.submit(*QUICK), attempt=1)
 
     def test_a_job_that_the_kernel_ends_takes_nobody_with_it(self):
-        worker = stage.farm.start_worker(memory_mb=400)  # and no limit of the worker's own
+        worker = stage.farm.start_worker(memory_mb=300)  # and no limit of the worker's own
         Running.workers = [worker]
         for _ in range(ROUNDS):
             job = stage.farm.wait(stage.farm.submit(*LARGE), 900)
