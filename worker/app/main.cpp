@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <iostream>
 #include <optional>
 
@@ -18,6 +19,9 @@
 int main(int argc, char** argv) {
   using namespace skinframe;
   use_one_blas_thread();
+  // For the jobs' processes: none of OpenBLAS' own threads, which take a buffer each whenever they come to
+  // it, and then the one that the job has reserved (reserve_blas.h).
+  ::setenv("OPENBLAS_NUM_THREADS", "1", 1);
   spdlog::set_default_logger(spdlog::stderr_color_mt("worker"));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
 
