@@ -201,7 +201,7 @@ class Memory(Running):
         for _ in range(ROUNDS):
             job = stage.farm.wait(stage.farm.submit(*LARGE), 900)
             self.assertEqual((job["state"], job["reason"]), ("FAILED", "OUT_OF_MEMORY"), job)
-            self.assertIn("memory", job["detail"])
+            self.assertIn("limit of 700 MB", job["detail"])
             self.expect_done(stage.farm.submit(*QUICK), attempt=1)
 
     def test_a_job_that_the_kernel_ends_takes_nobody_with_it(self):

@@ -368,9 +368,8 @@ TEST_F(CheckTest, FalseFiguresOfSmoothedDetailAreSeen) {
                             smoothed),
               Names("skin volume"));
   EXPECT_THAT(
-      denied_report(
-          [](json& p) { p["smoothing"]["added_skin_mm3"] = p["skin_volume_mm3"].get<double>() * 0.5; },
-          smoothed),
+      denied_report([](json& p) { p["smoothing"]["added_skin_mm3"] = p["skin_volume_mm3"].get<double>(); },
+                    smoothed),
       Names("smoothed detail"));
 }
 
