@@ -9,24 +9,13 @@
 #include <cmath>
 
 #include "worker/run/ordering_turn.h"
+#include "worker/stress/isotropic.h"
 
 namespace skinframe {
 namespace {
 
 using StrainMatrix = Eigen::Matrix<double, 6, 12>;
 using SparseMatrix = Eigen::SparseMatrix<double>;
-
-Eigen::Matrix<double, 6, 6> stiffness_of(const ElasticMaterial& material) {
-  const double e = material.modulus_mpa, nu = material.poisson_ratio;
-  const double mu = e / (2.0 * (1.0 + nu));
-  Eigen::Matrix<double, 6, 6> d = Eigen::Matrix<double, 6, 6>::Zero();
-  d.topLeftCorner<3, 3>().setConstant(e * nu / ((1.0 + nu) * (1.0 - 2.0 * nu)));
-  for (int i = 0; i < 3; ++i) {
-    d(i, i) += 2.0 * mu;
-    d(i + 3, i + 3) = mu;  // against engineering shear strain
-  }
-  return d;
-}
 
 // Strain from the displacements of the four corners.
 StrainMatrix strain_matrix(const TetMesh& mesh, const std::array<int, 4>& tet) {
@@ -75,7 +64,7 @@ Result<std::vector<ElasticResponse>> solve_elasticity(const TetMesh& mesh, const
     return invalid_input(fmt::format("{} vertices of tetrahedra, more than {}", n, kMaxElasticVertices));
 
   const Unknowns unknowns = number_unknowns(mesh, prescribed);
-  const auto d = stiffness_of(material);
+  const auto d = isotropic_stiffness(material);
   const int cases = static_cast<int>(forces_n.size());
   Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(unknowns.count, cases);
   for (int c = 0; c < cases; ++c)

@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/stress/quadratic_solid.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/CholmodSupport>
+#include <Eigen/Dense>
+#include <Eigen/Sparse>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "worker/run/ordering_turn.h"
+#include "worker/stress/isotropic.h"
+
+namespace skinframe {
+namespace {
+
+using Eigen::Vector3d;
+using SparseMatrix = Eigen::SparseMatrix<double>;
+using Strain = Eigen::Matrix<double, 6, 30>;
+
+constexpr int kEdges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+
+// Corners as in the tetrahedra, then a node in the middle of each edge.
+struct QuadraticMesh {
+  std::vector<Vector3d> nodes_mm;
+  std::vector<std::array<int, 10>> tets;
+  std::vector<std::array<int, 6>> surface;  // corners, then the middles of sides 01, 12, 20
+};
+
+std::vector<std::array<int, 4>> largest_part(const TetMesh& mesh) {
+  const auto part = face_components(mesh);
+  std::map<int, double> volume;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) volume[part[t]] += tet_volume_mm3(mesh, mesh.tets[t]);
+  const auto largest = std::max_element(volume.begin(), volume.end(),
+                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+  std::vector<std::array<int, 4>> kept;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    if (part[t] == largest->first) kept.push_back(mesh.tets[t]);
+  return kept;
+}
+
+QuadraticMesh with_middles(TetMesh mesh) {
+  mesh.tets = largest_part(mesh);
+  QuadraticMesh out;
+  std::vector<int> renamed(mesh.vertices_mm.size(), -1);
+  const auto corner = [&](int v) {
+    if (renamed[v] < 0) {
+      renamed[v] = static_cast<int>(out.nodes_mm.size());
+      out.nodes_mm.push_back(mesh.vertices_mm[v]);
+    }
+    return renamed[v];
+  };
+  std::map<std::pair<int, int>, int> known;
+  const auto middle = [&](int a, int b) {
+    const auto [it, fresh] = known.try_emplace(std::minmax(a, b), static_cast<int>(out.nodes_mm.size()));
+    if (fresh) out.nodes_mm.push_back((out.nodes_mm[a] + out.nodes_mm[b]) / 2);
+    return it->second;
+  };
+  for (const auto& tet : mesh.tets) {
+    std::array<int, 10> e{};
+    for (int i = 0; i < 4; ++i) e[i] = corner(tet[i]);
+    for (int k = 0; k < 6; ++k) e[4 + k] = middle(e[kEdges[k][0]], e[kEdges[k][1]]);
+    out.tets.push_back(e);
+  }
+  for (const auto& face : boundary_of(mesh)) {
+    const int a = corner(face[0]), b = corner(face[1]), c = corner(face[2]);
+    out.surface.push_back({a, b, c, middle(a, b), middle(b, c), middle(c, a)});
+  }
+  return out;
+}
+
+// Gradients of the area coordinates, one a column, and the volume.
+std::pair<Eigen::Matrix<double, 3, 4>, double> slopes_of(const QuadraticMesh& mesh,
+                                                         const std::array<int, 10>& e) {
+  Eigen::Matrix3d edges;
+  for (int k = 0; k < 3; ++k) edges.row(k) = (mesh.nodes_mm[e[k + 1]] - mesh.nodes_mm[e[0]]).transpose();
+  Eigen::Matrix<double, 3, 4> slopes;
+  slopes.rightCols<3>() = edges.inverse();
+  slopes.col(0) = -slopes.rightCols<3>().rowwise().sum();
+  return {slopes, edges.determinant() / 6};
+}
+
+Strain strain_at(const Eigen::Matrix<double, 3, 4>& slopes, const std::array<double, 4>& l) {
+  Strain b = Strain::Zero();
+  for (int i = 0; i < 10; ++i) {
+    Vector3d g;
+    if (i < 4) {
+      g = (4 * l[i] - 1) * slopes.col(i);
+    } else {
+      const auto& [p, q] = kEdges[i - 4];
+      g = 4 * (l[p] * slopes.col(q) + l[q] * slopes.col(p));
+    }
+    const double x = g[0], y = g[1], z = g[2];
+    b.block<6, 3>(0, 3 * i) << x, 0, 0, 0, y, 0, 0, 0, z, y, x, 0, 0, z, y, z, 0, x;
+  }
+  return b;
+}
+
+Eigen::Matrix<double, 30, 30> stiffness_of(const QuadraticMesh& mesh, const std::array<int, 10>& e,
+                                           const Eigen::Matrix<double, 6, 6>& d) {
+  constexpr double kNear = 0.58541019662496852, kFar = 0.13819660112501051;
+  const auto [slopes, volume] = slopes_of(mesh, e);
+  Eigen::Matrix<double, 30, 30> k = Eigen::Matrix<double, 30, 30>::Zero();
+  for (int point = 0; point < 4; ++point) {
+    std::array<double, 4> l{kFar, kFar, kFar, kFar};
+    l[point] = kNear;
+    const Strain b = strain_at(slopes, l);
+    const Strain stress = d * b;
+    k.noalias() += volume / 4 * b.transpose() * stress;
+  }
+  return k;
+}
+
+// Constant over triangles whose middle is within the radius of the surface's nearest node: a third of it on
+// the middle of each side.
+void press(const QuadraticMesh& mesh, const StressLoad& load, Eigen::Ref<Eigen::VectorXd> f) {
+  int nearest = -1;
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& t : mesh.surface)
+    for (const int v : t) {
+      const double d = (mesh.nodes_mm[v] - load.point_mm).squaredNorm();
+      if (d < least) {
+        least = d;
+        nearest = v;
+      }
+    }
+  std::vector<std::pair<const std::array<int, 6>*, double>> patch;
+  double area = 0;
+  for (const auto& t : mesh.surface) {
+    const Vector3d &a = mesh.nodes_mm[t[0]], &b = mesh.nodes_mm[t[1]], &c = mesh.nodes_mm[t[2]];
+    if (((a + b + c) / 3 - mesh.nodes_mm[nearest]).norm() > load.radius_mm) continue;
+    patch.emplace_back(&t, (b - a).cross(c - a).norm());
+    area += patch.back().second;
+  }
+  if (!(area > 0)) {
+    f.segment<3>(3 * nearest) += load.force_n;
+    return;
+  }
+  for (const auto& [t, share] : patch)
+    for (int k = 3; k < 6; ++k) f.segment<3>(3 * (*t)[k]) += load.force_n * (share / (3 * area));
+}
+
+Eigen::VectorXd weight_n(const QuadraticMesh& mesh, double density) {
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(mesh.nodes_mm.size()));
+  for (const auto& e : mesh.tets) {
+    const double weight = density * slopes_of(mesh, e).second;
+    for (int i = 0; i < 10; ++i) f[3 * e[i] + 2] -= i < 4 ? -weight / 20 : weight / 5;
+  }
+  return f;
+}
+
+}  // namespace
+
+Result<std::vector<SolidAnswer>> solve_quadratic_solid(const TetMesh& linear, const ElasticMaterial& material,
+                                                       double weight_density_n_mm3,
+                                                       const std::function<bool(const Vector3d&)>& held,
+                                                       const std::vector<SolidCase>& cases,
+                                                       const RunContext& context) {
+  if (linear.tets.empty()) return invalid_input("no tetrahedra");
+  if (linear.tets.size() > kMaxQuadraticTets)
+    return invalid_input(fmt::format("{} tetrahedra, more than {}", linear.tets.size(), kMaxQuadraticTets));
+  const QuadraticMesh mesh = with_middles(linear);
+  const auto n = static_cast<Eigen::Index>(mesh.nodes_mm.size());
+  std::vector<int> place(n, 0);
+  for (const auto& t : mesh.surface)
+    for (const int v : t)
+      if (held(mesh.nodes_mm[v])) place[v] = -1;
+  int free = 0;
+  for (int& p : place) {
+    if (p < 0) continue;
+    p = free;
+    free += 3;
+  }
+  Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(3 * n, static_cast<Eigen::Index>(cases.size())),
+                  right(free, loads.cols());
+  const Eigen::VectorXd weight = weight_n(mesh, weight_density_n_mm3);
+  for (std::size_t c = 0; c < cases.size(); ++c)
+    for (const StressLoad& load : cases[c].loads) press(mesh, load, loads.col(c));
+  for (Eigen::Index v = 0; v < n; ++v)
+    for (Eigen::Index c = 0; c < loads.cols(); ++c)
+      if (place[v] >= 0)
+        right.block<3, 1>(place[v], c) =
+            loads.block<3, 1>(3 * v, c) + (cases[c].gravity ? 1.0 : 0.0) * weight.segment<3>(3 * v);
+
+  const auto d = isotropic_stiffness(material);
+  std::vector<Eigen::Triplet<double>> entries;
+  entries.reserve(mesh.tets.size() * 465);
+  for (const auto& e : mesh.tets) {
+    const auto k = stiffness_of(mesh, e, d);
+    for (int i = 0; i < 30; ++i)
+      for (int j = 0; j < 30; ++j) {
+        const int row = place[e[i / 3]] + i % 3, column = place[e[j / 3]] + j % 3;
+        if (place[e[i / 3]] >= 0 && place[e[j / 3]] >= 0 && row >= column)
+          entries.emplace_back(row, column, k(i, j));
+      }
+  }
+  SparseMatrix stiffness(free, free);
+  stiffness.setFromTriplets(entries.begin(), entries.end());
+  entries = {};
+  if (context.cancelled()) return cancelled_error();
+  Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> solver;
+  solver.cholmod().print = 0;
+  {
+    const OrderingTurn turn;
+    solver.analyzePattern(stiffness);
+  }
+  solver.factorize(stiffness);
+  if (free == 0 || solver.info() != Eigen::Success)
+    return invalid_input("the solid is not held by its supports");
+  if (context.cancelled()) return cancelled_error();
+  const Eigen::MatrixXd solution = solver.solve(right);
+
+  std::vector<SolidAnswer> answers(cases.size());
+  for (std::size_t c = 0; c < cases.size(); ++c)
+    for (Eigen::Index v = 0; v < n; ++v) {
+      if (place[v] < 0) continue;
+      const Vector3d u = solution.block<3, 1>(place[v], static_cast<Eigen::Index>(c));
+      answers[c].external_work_n_mm +=
+          u.dot(Vector3d(loads.block<3, 1>(3 * v, static_cast<Eigen::Index>(c))));
+      if (u.norm() <= answers[c].max_displacement_mm) continue;
+      answers[c].max_displacement_mm = u.norm();
+      answers[c].at_mm = mesh.nodes_mm[v];
+    }
+  return answers;
+}
+
+}  // namespace skinframe

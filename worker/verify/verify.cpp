@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/verify/verify.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "worker/run/one_blas_thread.h"
+#include "worker/skin/triangle_tree.h"
+#include "worker/verify/assess.h"
+#include "worker/verify/hollow.h"
+#include "worker/verify/shell_models.h"
+#include "worker/verify/solid_reference.h"
+
+namespace skinframe {
+namespace {
+
+struct FineModel {
+  FineSkin skin;
+  std::vector<LoadCase> cases;
+  Structure structure;  // of the skin-frame
+};
+
+Result<FineModel> model_at(const VerifyInput& in, int levels) {
+  FineModel model;
+  model.skin = refine_skin(in.problem.frame, in.skin, levels);
+  auto cases = in.place_loads(model.skin.frame);
+  if (!cases) return cases.error();
+  model.cases = std::move(cases).value();
+  model.structure = skin_frame_structure(in.problem, in.radii_mm, in.skin, model.skin);
+  return model;
+}
+
+double largest_change(const std::vector<double>& before, const std::vector<double>& after) {
+  double worst = 0;
+  for (std::size_t c = 0; c < after.size(); ++c)
+    worst = std::max(worst, std::abs(after[c] - before[c]) / std::max(std::abs(after[c]), 1e-30));
+  return worst;
+}
+
+// The mesh that is fine enough, and how well.
+Result<FineModel> refine(const VerifyInput& in, Verification* out, const RunContext& context) {
+  int level = fine_node_count(in.problem.frame, 2) <= kMostFineNodes ? 1 : 0;
+  std::vector<double> before;
+  for (;; ++level) {
+    auto model = model_at(in, level);
+    if (!model) return model.error();
+    auto works = load_works(model->structure, model->cases, context);
+    if (!works) return works.error();
+    out->levels = level;
+    const bool last = fine_node_count(in.problem.frame, level + 1) > kMostFineNodes && level > 0;
+    if (!before.empty()) out->mesh_error = largest_change(before, *works);
+    if (!before.empty() && (last || out->mesh_error < kMeshTolerance)) return model;
+    before = std::move(works).value();
+  }
+}
+
+void assess_hollow(const VerifyInput& in, const FineModel& model, const TriangleTree& body,
+                   const std::vector<PinchSite>& pinches, Verification* out, const RunContext& context) {
+  out->hollow_wall_mm = equal_volume_wall_mm(in.skin, in.solid_volume_mm3, in.printed_volume_mm3);
+  const auto walls = local_walls_mm(model.skin, in.skin, body, out->hollow_wall_mm);
+  const Structure structure = hollow_structure(in.problem, in.skin, model.skin, walls);
+  auto assessed = assess(structure, model.skin, model.cases, pinches, context);
+  if (!assessed) {
+    out->hollow_missing = assessed.error().message;
+    return;
+  }
+  out->hollow = std::move(assessed->figures);
+}
+
+}  // namespace
+
+Result<Verification> verify(const VerifyInput& in, const RunContext& context) {
+  use_one_blas_thread();
+  Verification out;
+  auto model = refine(in, &out, context);
+  if (!model) return model.error();
+  const TriangleTree body(in.body);
+  const auto pinches = spread_pinches(model->skin, in.skin, body);
+  auto ours = assess(model->structure, model->skin, model->cases, pinches, context);
+  if (!ours) return ours.error();
+  const double density_g_mm3 = in.problem.material.density_g_cm3 * 1e-3;
+  out.ours = ours->figures;
+  out.ours.weight_g = in.printed_volume_mm3 * density_g_mm3;
+  out.euler_factor = ours->euler_factor;
+  out.euler_strut = ours->euler_strut;
+  out.balance_force = ours->balance.force;
+  out.balance_moment = ours->balance.moment;
+  out.nodes = model->structure.nodes_mm.size();
+  out.triangles = model->structure.shells.size();
+  out.strength_mpa = in.problem.material.tensile_strength_mpa;
+  if (out.strength_mpa && out.ours.max_stress_mpa() > 0)
+    out.safety_factor = *out.strength_mpa / out.ours.max_stress_mpa();
+
+  const std::size_t skin_nodes = model->skin.frame.nodes_mm.size();
+  out.skin_mm.assign(model->structure.nodes_mm.begin(), model->structure.nodes_mm.begin() + skin_nodes);
+  out.skin_triangles = model->skin.frame.skin_triangles;
+  for (std::size_t c = 0; c < model->cases.size(); ++c) {
+    Deformation deformation{model->cases[c].name, {}};
+    for (std::size_t i = 0; i < skin_nodes; ++i)
+      deformation.displacement_mm.push_back(
+          ours->displacements.col(c).segment<3>(6 * static_cast<Eigen::Index>(i)));
+    out.deformations.push_back(std::move(deformation));
+  }
+
+  auto alone = assess(skin_alone_structure(in.problem, in.skin, model->skin), model->skin, model->cases,
+                      pinches, context);
+  if (alone) out.skin_alone = std::move(alone->figures);
+  if (context.cancelled()) return cancelled_error();
+  assess_hollow(in, *model, body, pinches, &out, context);
+  if (out.hollow) out.hollow->weight_g = out.ours.weight_g;
+  if (context.cancelled()) return cancelled_error();
+  if (in.compare_solid) {
+    auto solid = assess_solid(in, model->skin, pinches, context);
+    if (solid)
+      out.solid = std::move(solid).value();
+    else
+      out.solid_missing = solid.error().message;
+    if (context.cancelled()) return cancelled_error();
+  }
+  out.verdict = verdict_of(out);
+  return out;
+}
+
+}  // namespace skinframe
