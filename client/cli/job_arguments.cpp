@@ -45,6 +45,7 @@ v1::JobOptions options_of(const JobArguments& a) {
   out.set_orient(value_of(kOrients, a.orient));
   out.set_order(value_of(kOrders, a.order));
   out.set_no_optimize(a.no_optimize);
+  out.set_verify(a.verify);
   if (a.size_mm) out.set_size_mm(*a.size_mm);
   if (a.skin_nodes) out.set_skin_nodes(*a.skin_nodes);
   if (a.internal_nodes) out.set_internal_nodes(*a.internal_nodes);
@@ -96,6 +97,10 @@ void add_job_options(CLI::App& verb, JobArguments& a) {
       ->check(one_of(kSmooths));
   verb.add_option("--orient", a.orient, "Keep the orientation or search the best")->check(one_of(kOrients));
   verb.add_flag("--no-optimize", a.no_optimize, "Radii stay at their lower bounds");
+  verb.add_flag(
+      "--verify", a.verify,
+      "Analyse the result by a valid model too (shell and struts with rotations): displacement, stress, "
+      "buckling, a pinch of 10 N, beside a hollow of equal mass and the solid; some seconds more");
   verb.add_option("--order", a.order, "Order of the optimiser's stages")->check(one_of(kOrders));
   verb.add_option("--displacement-limit", a.displacement_limit_mm,
                   "Largest displacement in mm (default 0.05)");

@@ -28,6 +28,7 @@ struct JobArguments {
   std::optional<std::int32_t> skin_nodes, internal_nodes;
   std::optional<double> voxel_mm, displacement_limit_mm;
   bool no_optimize = false;
+  bool verify = false;
   std::optional<std::uint64_t> seed;
   std::int32_t priority = 0;
   std::string deadline;

@@ -209,6 +209,7 @@ Result<json> options_json(const v1::JobOptions& o) {
               {"smooth", smooth},
               {"orient", orient},
               {"no_optimize", o.no_optimize()},
+              {"verify", o.verify()},
               {"order", order},
               {"displacement_limit_mm",
                o.has_displacement_limit_mm() ? o.displacement_limit_mm() : kDefaultDisplacementLimitMm},

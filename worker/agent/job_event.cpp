@@ -119,6 +119,23 @@ Result<v1::JobProgress> read_progress(const json& object) {
   return out;
 }
 
+Result<v1::VerifiedFigures> read_verified(const json& object) {
+  ObjectReader in(object, "verified");
+  v1::VerifiedFigures out;
+  out.set_max_displacement_mm(in.number("max_displacement_mm").value_or(0));
+  out.set_max_stress_mpa(in.number("max_stress_mpa").value_or(0));
+  if (const auto v = in.number("safety_factor")) out.set_safety_factor(*v);
+  if (const auto v = in.number("buckling_factor")) out.set_buckling_factor(*v);
+  if (const auto v = in.number("pinch_max_mm")) out.set_pinch_max_mm(*v);
+  if (const auto v = in.number("solid_max_displacement_mm")) out.set_solid_max_displacement_mm(*v);
+  if (const auto v = in.number("hollow_max_displacement_mm")) out.set_hollow_max_displacement_mm(*v);
+  if (const auto v = in.number("hollow_thickness_mm")) out.set_hollow_thickness_mm(*v);
+  if (const auto v = in.number("hollow_pinch_max_mm")) out.set_hollow_pinch_max_mm(*v);
+  out.set_verdict(in.text("verdict", kMaxDetailBytes));
+  if (!in.error().empty()) return invalid_input(in.error());
+  return out;
+}
+
 Result<v1::PrinterStatistics> read_statistics(const json& object) {
   ObjectReader in(object, "statistics");
   v1::PrinterStatistics out;
@@ -135,6 +152,11 @@ Result<v1::PrinterStatistics> read_statistics(const json& object) {
   out.set_struts(in.count("struts").value_or(0));
   out.set_max_displacement_mm(in.number("max_displacement_mm").value_or(0));
   out.set_balance(in.text("balance", kMaxNameBytes));
+  if (const json* verified = in.find("verified")) {
+    auto read = read_verified(*verified);
+    if (!read) return read.error();
+    *out.mutable_verified() = std::move(read).value();
+  }
   if (!in.error().empty()) return invalid_input(in.error());
   return out;
 }

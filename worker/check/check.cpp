@@ -56,6 +56,7 @@ Verdict judge(const ExportedPrinter& result, const std::optional<ExportedOrienta
   claim_mechanics(result, &verdict);
   claim_bounds(result, &verdict);
   claim_balance(result, outer_mesh, &verdict);
+  claim_verified(result, outer_mesh, outer, &verdict);
   return verdict;
 }
 

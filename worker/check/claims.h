@@ -22,6 +22,15 @@ void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, c
 void claim_smoothing(const ExportedPrinter& result, const TriangleMesh& outer_mesh,
                      const TriangleMesh& cavity, const Surface& outer, Verdict* verdict);
 
+// Share of M that lies within that depth of its surface, from points spread evenly over its box. The error is
+// the binomial one of the count of points inside.
+struct WallSample {
+  double volume_mm3 = 0;
+  double error_mm3 = 0;  // four standard deviations
+};
+WallSample sample_wall(const Surface& outer, const BoundingBox& box, double depth_mm,
+                       double solid_volume_mm3);
+
 // Directed edges without their opposite, edges with more than two triangles, triangles with two equal
 // corners.
 struct EdgeCount {
@@ -79,15 +88,15 @@ void claim_overhang(const ExportedPrinter& result, const TriangleMesh& outer_mes
 void claim_layers(const ExportedPrinter& result, Verdict* verdict);
 
 // --orient best: the estimate of added strut volume (support/orient_body.h) of the chosen attitude and of its
-// runner-up, computed anew from M's triangles, are as reported, and the chosen one needs no more; it stands by
-// the margin that is reported.
+// runner-up, computed anew from M's triangles, are as reported, and the chosen one needs no more; it stands
+// by the margin that is reported.
 void claim_orientation(const ExportedOrientation& orientation, const ExportedPrinter& result,
                        const TriangleMesh& outer_mesh, Verdict* verdict);
 // Of a body's centroid inside the hull of its base contact; negative outside.
 double standing_margin_mm(const TriangleMesh& outer_mesh);
 
-// The struts of each stage: as many as reported, of the reported volume, no radius below its bound; before and
-// after sizing of the same lengths, and those of the frame that was given.
+// The struts of each stage: as many as reported, of the reported volume, no radius below its bound; before
+// and after sizing of the same lengths, and those of the frame that was given.
 void claim_stages(const ExportedPrinter& result, Verdict* verdict);
 
 // Under gravity alone, one a node; empty where the stiffness is singular.
@@ -96,6 +105,12 @@ std::vector<Eigen::Vector3d> own_weight_displacements_mm(const ExportedFrame& fr
 // Of a frame problem: radii within each strut's own bounds (9, 10), slenderness (4, 5), counts and volumes
 // (12), balance (8).
 void claim_solution(const ExportedPrinter& solution, Verdict* verdict);
+
+// The valid model's figures: each load's largest displacement is that of its deformation file, whose vertices
+// stand on the frame's nodes; safety, buckling and pinch follow from the figures of loads; rows of the
+// comparison say who is better; the hollow has the printed mass.
+void claim_verified(const ExportedPrinter& result, const TriangleMesh& body, const Surface& outer,
+                    Verdict* verdict);
 
 // Equilibrium (1), stresses (2, 3), displacement (6): assembled and solved anew, in the paper's model or the
 // pin-jointed one, as the file says.

@@ -192,6 +192,7 @@ ExportedPrinter parse_printer(const json& item) {
     out.skin_struts_outside = item.at("sampling").at("skin_struts_outside").get<int>();
   out.final_nodes = item.at("counts").at("geometry").at("nodes").get<int>();
   out.final_struts = item.at("counts").at("geometry").at("struts").get<int>();
+  if (item.contains("verification")) out.verification = parse_verification(item.at("verification"));
   if (!out.infeasible()) {
     out.printed_volume_mm3 = item.at("printed_volume_mm3").get<double>();
     out.printed_ratio = item.at("printed_ratio").get<double>();
@@ -256,6 +257,10 @@ Status read_listed(const std::filesystem::path& path, const json& item, Exported
     if (!initial) return initial.error();
     if (!printer->lower_bound_mm3 && !printer->relaxed_lower_bound_mm3) return ok_status();
     read_given(*initial, *initial, printer);
+  } else if (name.starts_with("deformation-") && printer->verification) {
+    auto deformation = read_deformation(path);
+    if (!deformation) return deformation.error();
+    printer->verification->deformations.push_back(std::move(deformation).value());
   } else if (name.starts_with("support-struts") && printer->supports) {
     auto file = read_mesh(path, ReadLimits{}, context);
     if (!file) return file.error();

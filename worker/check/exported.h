@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "worker/check/exported_verification.h"
 #include "worker/check/package.h"
 #include "worker/mesh/triangle_mesh.h"
 #include "worker/run/run_context.h"
@@ -124,6 +125,7 @@ struct ExportedPrinter {
   std::optional<TriangleMesh> compact;
   std::optional<Package> package, beams;  // skin-frame.3mf, frame-beams.3mf
   std::optional<ExportedSupports> supports;
+  std::optional<ExportedVerification> verification;
   std::size_t compact_triangles = 0, compact_crossings = 0;
   double compact_volume_mm3 = 0, compact_deviation_mm = 0;
   bool optimised() const { return termination != "NOT_OPTIMIZED"; }

@@ -28,32 +28,25 @@ bool near(double measured, double reported, double relative) {
   return std::abs(measured - reported) <= relative * std::max(std::abs(measured), std::abs(reported));
 }
 
-// Share of M that lies within the skin's thickness of its surface, from points spread evenly over its box.
-// The error is the binomial one of the count of points inside.
-struct SkinSample {
-  double volume_mm3 = 0;
-  double error_mm3 = 0;  // four standard deviations
-};
+}  // namespace
 
-SkinSample sample_skin_volume(const Surface& outer, const BoundingBox& box, double thickness_mm,
-                              double solid_volume_mm3) {
+WallSample sample_wall(const Surface& outer, const BoundingBox& box, double depth_mm,
+                       double solid_volume_mm3) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   constexpr int kInside = 20000, kTries = 2000000;
   int inside = 0, skin = 0;
   for (int i = 0; i < kTries && inside < kInside; ++i) {
     const Eigen::Vector3d u(unit(random), unit(random), unit(random));
-    const double depth = outer.depth_mm(box.min + u.cwiseProduct(box.extent()));
-    if (depth <= 0) continue;
+    const double at = outer.depth_mm(box.min + u.cwiseProduct(box.extent()));
+    if (at <= 0) continue;
     ++inside;
-    if (depth < thickness_mm) ++skin;
+    if (at < depth_mm) ++skin;
   }
   if (inside == 0) return {0, solid_volume_mm3};
   const double share = static_cast<double>(skin) / inside;
   return {share * solid_volume_mm3, 4 * std::sqrt(share * (1 - share) / inside) * solid_volume_mm3};
 }
-
-}  // namespace
 
 EdgeCount count_edges(const TriangleMesh& mesh) {
   EdgeCount count;
@@ -134,7 +127,7 @@ void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, c
 
   const BoundingBox box = bounding_box(outer_mesh);
   if (!result.solid() && !result.added_skin_mm3) {
-    const SkinSample skin = sample_skin_volume(outer, box, result.skin_thickness_mm, solid);
+    const WallSample skin = sample_wall(outer, box, result.skin_thickness_mm, solid);
     const double allowed = skin.error_mm3 + 0.02 * skin.volume_mm3;
     verdict->claims.push_back({"skin volume", std::abs(skin.volume_mm3 - result.skin_volume_mm3) <= allowed,
                                fmt::format("{:.0f} mm3 by sampling (+- {:.0f}), reported {:.0f} mm3",
@@ -166,7 +159,7 @@ void claim_solid(const ExportedPrinter& result, const TriangleMesh& outer_mesh, 
            result.final_nodes, result.final_struts)});
   // A hollow is cut from a grid: a slit thinner than its voxel is none.
   const double deepest_mm = result.skin_thickness_mm + 0.5 * result.voxel_mm;
-  const SkinSample skin = sample_skin_volume(outer, bounding_box(outer_mesh), deepest_mm, solid);
+  const WallSample skin = sample_wall(outer, bounding_box(outer_mesh), deepest_mm, solid);
   const double deep = 1.0 - skin.volume_mm3 / solid;
   constexpr double kMostHollow = 0.015;  // of the volume; a body is called thin everywhere below 0.01
   verdict->claims.push_back(

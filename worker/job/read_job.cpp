@@ -142,6 +142,7 @@ JobOptions parse_options(const json& item) {
   options.internal_nodes = optional_count(item, "internal_nodes", 0, 20000);
   options.voxel_mm = optional_number(item, "voxel_mm", 0.02, 5);
   options.no_optimize = item.at("no_optimize").get<bool>();
+  options.verify = item.at("verify").get<bool>();
   options.order =
       choice<StageOrder>(item, "order", {{"tight", StageOrder::kTight}, {"paper", StageOrder::kPaper}});
   options.displacement_limit_mm = number(item, "displacement_limit_mm", 1e-3, 100);

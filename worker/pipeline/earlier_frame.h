@@ -16,8 +16,8 @@
 //     kWarmTolerance further above this job's bound than the earlier job's result stood above its own;
 //     otherwise the cold way is gone as well, and the smaller result is taken. So only an accepted one can be
 //     larger than a cold run's. By how much is measured, not proven, since both are local optima:
-//     0.3 % and 0.1 % larger on the hanging ball with another load, 1.3 % on a small egg; and smaller where the
-//     nodes that follow the new loads' stress happen to serve less well.
+//     0.3 % and 0.1 % larger on the hanging ball with another load, 1.3 % on a small egg; and smaller where
+//     the nodes that follow the new loads' stress happen to serve less well.
 //  4. Same spec, same earlier files: same result.
 #pragma once
 

@@ -14,6 +14,7 @@
 #include "worker/pipeline/sampling_checkpoint.h"
 #include "worker/pipeline/solve_and_merge.h"
 #include "worker/pipeline/support_print.h"
+#include "worker/pipeline/verify_result.h"
 #include "worker/pipeline/write_json.h"
 #include "worker/pipeline/write_results.h"
 #include "worker/problem/problem_file.h"
@@ -186,6 +187,11 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, SharedSkins
       return written.error();
   }
   laps.lap("write");
+  if (job.options.verify) {
+    if (auto verified = verify_result(prepared, *skin, job, folder, &report, context); !verified)
+      return verified.error();
+    laps.lap("verify");
+  }
   return report;
 }
 

@@ -151,6 +151,17 @@ Eigen::Vector3d place_point_mm(const Solid& solid, Place place) {
   return area > 0 ? Eigen::Vector3d(sum / area) : mesh.vertices[furthest];
 }
 
+std::vector<StressLoad> loads_at_points(const std::vector<Load>& loads, const Solid& solid) {
+  std::vector<StressLoad> out;
+  for (const Load& load : loads) {
+    const Eigen::Vector3d point = std::holds_alternative<Place>(load.where)
+                                      ? place_point_mm(solid, std::get<Place>(load.where))
+                                      : std::get<Eigen::Vector3d>(load.where);
+    out.push_back({load.name, point, load.force_n, load.radius_mm});
+  }
+  return out;
+}
+
 Result<PlacedLoads> place_loads(const std::vector<Load>& loads, const Solid& solid, const Frame& frame) {
   const auto empty_case = [&](const std::string& name) {
     return LoadCase{name, true, std::vector<Eigen::Vector3d>(frame.nodes_mm.size(), Eigen::Vector3d::Zero())};

@@ -10,6 +10,7 @@
 #include "worker/mechanics/frame_problem.h"
 #include "worker/pipeline/request.h"
 #include "worker/solid/solid.h"
+#include "worker/stress/stress_map.h"
 
 namespace skinframe {
 
@@ -19,6 +20,9 @@ inline constexpr const char* kSelfWeight = "self-weight";
 // The middle of the connected part of the surface that stands within 1 mm of the furthest point in that
 // direction.
 Eigen::Vector3d place_point_mm(const Solid& solid, Place place);
+
+// The loads by the points where they act, for the solid.
+std::vector<StressLoad> loads_at_points(const std::vector<Load>& loads, const Solid& solid);
 
 struct PlacedLoads {
   std::vector<LoadCase> cases;

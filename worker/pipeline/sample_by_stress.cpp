@@ -11,17 +11,6 @@ namespace {
 // Below this share of the solid the map says too little about it to go without a word.
 constexpr double kLeastCovered = 0.8;
 
-std::vector<StressLoad> stress_loads(const std::vector<Load>& loads, const Solid& solid) {
-  std::vector<StressLoad> out;
-  for (const Load& load : loads) {
-    const Eigen::Vector3d point = std::holds_alternative<Place>(load.where)
-                                      ? place_point_mm(solid, std::get<Place>(load.where))
-                                      : std::get<Eigen::Vector3d>(load.where);
-    out.push_back({load.name, point, load.force_n, load.radius_mm});
-  }
-  return out;
-}
-
 }  // namespace
 
 FrameOptions frame_options(const PrinterRequest& request, const JobRequest& job) {
@@ -56,7 +45,7 @@ Result<SampledFrame> sample_by_stress(const PreparedSolid& prepared, const Skin&
   StressOptions stress_options;
   stress_options.material.modulus_mpa = request.material.tensile_modulus_mpa;
   stress_options.density_g_cm3 = request.material.density_g_cm3;
-  auto mapped = map_stress(skin, stress_loads(job.loads, prepared.solid), stress_options, context);
+  auto mapped = map_stress(skin, loads_at_points(job.loads, prepared.solid), stress_options, context);
   if (!mapped && mapped.error().kind == ErrorKind::kCancelled) return mapped.error();
   std::optional<StressMap> stress;
   if (mapped) {

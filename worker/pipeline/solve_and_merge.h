@@ -35,7 +35,8 @@ struct SolveSetting {
 };
 
 // Fills the report's optimised frame, supports, statistics, termination and reason. No mesh when the job is
-// infeasible. `problem` is left as it was solved last: its balance half planes drawn in as the print asked for.
+// infeasible. `problem` is left as it was solved last: its balance half planes drawn in as the print asked
+// for.
 Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting, FrameProblem* problem,
                                                      PrinterReport* report, RunContext& context);
 

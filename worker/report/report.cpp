@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/report/report.h"
 
+#include "worker/report/verification_json.h"
+
 #include "worker/mechanics/equilibrium.h"
 
 namespace skinframe {
@@ -158,19 +160,21 @@ json mesh_json(const MeshFacts& facts, const Solid& solid, const Contact& contac
 }
 
 json to_json(const Statistics& s) {
-  return {{"solid_volume_mm3", s.solid_volume_mm3},
-          {"skin_volume_mm3", s.skin_volume_mm3},
-          {"frame_volume_mm3", s.frame_volume_mm3},
-          {"total_volume_mm3", s.total_volume_mm3},
-          {"ratio", s.ratio},
-          {"printed_volume_mm3", s.printed_volume_mm3},
-          {"printed_ratio", s.printed_ratio},
-          {"weight_g", s.weight_g},
-          {"skin_nodes", s.skin_nodes},
-          {"nodes", s.nodes},
-          {"struts", s.struts},
-          {"max_displacement_mm", s.max_displacement_mm},
-          {"balance", s.balance}};
+  json out = {{"solid_volume_mm3", s.solid_volume_mm3},
+              {"skin_volume_mm3", s.skin_volume_mm3},
+              {"frame_volume_mm3", s.frame_volume_mm3},
+              {"total_volume_mm3", s.total_volume_mm3},
+              {"ratio", s.ratio},
+              {"printed_volume_mm3", s.printed_volume_mm3},
+              {"printed_ratio", s.printed_ratio},
+              {"weight_g", s.weight_g},
+              {"skin_nodes", s.skin_nodes},
+              {"nodes", s.nodes},
+              {"struts", s.struts},
+              {"max_displacement_mm", s.max_displacement_mm},
+              {"balance", s.balance}};
+  if (!s.verified.is_null()) out["verified"] = s.verified;
+  return out;
 }
 
 json to_json(const PlannedSupports& supports) {
@@ -253,6 +257,10 @@ json to_json(const PrinterReport& report) {
   if (report.thin) out["thin"] = thin_json(*report.thin);
   if (report.smoothing) out["smoothing"] = smoothing_json(*report.smoothing);
   if (report.sampling) out["sampling"] = sampling_json(*report.sampling);
+  if (report.verification)
+    out["verification"] = to_json(*report.verification);
+  else if (!report.not_verified.empty())
+    out["verification"] = not_verified_json(report.not_verified);
   if (report.warm_start)
     out["warm_start"] = {{"job_id", report.warm_start->job_id},
                          {"reused", report.warm_start->reused},

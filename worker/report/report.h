@@ -24,6 +24,7 @@
 #include "worker/solid/solid.h"
 #include "worker/support/overhang.h"
 #include "worker/support/print_state.h"
+#include "worker/verify/verification.h"
 
 namespace skinframe {
 
@@ -72,6 +73,7 @@ struct Statistics {
   std::string balance;                      // "holds", "not_standing", "off", "not_claimed"
   std::optional<double> balance_margin_mm;  // of the nominal centre of gravity inside the base contact
   std::optional<double> printed_balance_margin_mm;  // of the exported mesh's
+  nlohmann::json verified;                          // verified_summary_json(); null where it is not verified
 };
 nlohmann::json to_json(const Statistics& statistics);
 
@@ -150,7 +152,9 @@ struct PrinterReport {
   std::vector<std::string> files;  // in the printer's folder
   std::vector<std::string> warnings;
   std::optional<WarmStartReport> warm_start;
-  std::optional<PlannedSupports> supports;  // of extrusion printers
+  std::optional<PlannedSupports> supports;   // of extrusion printers
+  std::optional<Verification> verification;  // by the valid model
+  std::string not_verified;                  // why not, where that model was asked and has no answer
   std::map<std::string, double> seconds;
 };
 nlohmann::json to_json(const PrinterReport& report);

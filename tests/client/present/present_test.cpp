@@ -153,6 +153,11 @@ v1::Job finished_job() {
   s->set_printed_volume_mm3(80000);
   s->set_weight_g(109.3);
   s->set_max_displacement_mm(0.05);
+  auto* verified = s->mutable_verified();
+  verified->set_max_displacement_mm(1.5);
+  verified->set_hollow_max_displacement_mm(0.9);
+  verified->set_pinch_max_mm(0.25);
+  verified->set_verdict("worse in everything");
   auto* bad = job.add_printers();
   bad->set_printer_id("makerbot-replicator-2");
   bad->set_state(v1::JOB_STATE_FAILED);
@@ -170,6 +175,18 @@ TEST(ResultTable, HasTheFiguresOfTable2AndNamesTheModelOfTheDisplacement) {
   EXPECT_THAT(table, Not(HasSubstr("makerbot")));
   EXPECT_THAT(end_report(finished_job()),
               HasSubstr("makerbot-replicator-2: FAILED, DOES_NOT_FIT: 50 mm too tall"));
+}
+
+TEST(ResultTable, SetsTheVerifiedFiguresAndTheHollowsBesideThoseOfThePaper) {
+  const std::string table = result_table(finished_job());
+  for (const char* figure : {"verified", "1.5000 mm", "0.9000 mm", "0.2500 mm", "worse in everything"})
+    EXPECT_THAT(table, HasSubstr(figure));
+  v1::Job job = finished_job();
+  job.mutable_printers(0)->mutable_statistics()->clear_verified();
+  EXPECT_THAT(result_table(job), Not(HasSubstr("verified")));  // nobody asked
+  job.mutable_spec()->mutable_options()->set_verify(true);
+  EXPECT_THAT(result_table(job), HasSubstr("not verified"));
+  EXPECT_THAT(result_table(job), Not(HasSubstr("1.5000")));
 }
 
 v1::Job solved_frame() {

@@ -37,6 +37,7 @@ class CheckTest : public testing::Test {
     folder_ = new test::TemporaryFolder;
     JobRequest request = test::sample_job("egg", 36, 60, folder_->path());
     request.loads = {{"side", Place::kTop, {1, 0, 0}, 5}};
+    request.options.verify = true;
     RunContext context;
     auto outcomes = run_pipeline(request, honest(), PipelineObserver{}, context);
     ASSERT_TRUE(outcomes.ok()) << outcomes.error().message;
@@ -278,6 +279,62 @@ TEST_F(CheckTest, AFalseDisplacementIsSeen) {
   EXPECT_THAT(
       denied_report([](json& p) { p["max_displacement_mm"] = 0.5 * p["max_displacement_mm"].get<double>(); }),
       Names("displacement (paper model)"));
+}
+
+TEST_F(CheckTest, AVerifiedDisplacementThatItsFileDoesNotHaveIsSeen) {
+  const auto lie = [](json& p) {
+    json& v = p["verification"];
+    const double smaller = 0.5 * v["max_displacement_mm"].get<double>();
+    v["max_displacement_mm"] = smaller;
+    for (json& load : v["loads"])
+      load["max_displacement_mm"] = std::min(smaller, load["max_displacement_mm"].get<double>());
+    v["comparison"]["rows"][0]["skin_frame"] = smaller;
+  };
+  EXPECT_THAT(denied_report(lie), Names("displacement (verified)"));
+}
+
+TEST_F(CheckTest, ADeformationThatWasChangedOrLeftOutIsSeen) {
+  EXPECT_THAT(denied([](const fs::path& copy) {
+                const fs::path file = copy / kPrinter / "deformation-side.ply";
+                std::ifstream in(file, std::ios::binary);
+                std::string bytes((std::istreambuf_iterator<char>(in)), {});
+                const float far = 9.0F;
+                std::memcpy(&bytes[bytes.find("end_header\n") + 11 + 27 * 30 + 15], &far, sizeof far);
+                std::ofstream(file, std::ios::binary) << bytes;
+              }),
+              Names("displacement (verified)"));
+  EXPECT_THAT(denied_report([](json& p) {
+                auto& files = p["files"];
+                files.erase(std::find(files.begin(), files.end(), "deformation-side.ply"));
+              }),
+              Names("displacement (verified)"));
+}
+
+TEST_F(CheckTest, AFalseSafetyFactorAndAnUnbalancedAnswerAreSeen) {
+  EXPECT_THAT(denied_report([](json& p) { p["verification"]["safety_factor"] = 1e3; }),
+              Names("stress, buckling and pinch (verified)"));
+  EXPECT_THAT(denied_report([](json& p) { p["verification"]["balance"]["moment"] = 1e-4; }),
+              Names("stress, buckling and pinch (verified)"));
+  EXPECT_THAT(denied_report([](json& p) { p["verification"]["pinch_mean_mm"] = 1e3; }),
+              Names("stress, buckling and pinch (verified)"));
+}
+
+TEST_F(CheckTest, AComparisonThatNamesTheWrongWinnerIsSeen) {
+  EXPECT_THAT(denied_report([](json& p) {
+                json& row = p["verification"]["comparison"]["rows"][1];
+                row["better"] = row["better"] == "hollow" ? "skin-frame" : "hollow";
+              }),
+              Names("comparison with a hollow (verified)"));
+}
+
+TEST_F(CheckTest, AHollowOfAnotherMassIsSeen) {
+  EXPECT_THAT(denied_report([](json& p) { p["verification"]["hollow_thickness_mm"] = 0.5; }),
+              Names("hollow of equal mass"));
+}
+
+TEST_F(CheckTest, WhatIsNotVerifiedMustNotBringFigures) {
+  EXPECT_THAT(denied_report([](json& p) { p["verification"]["label"] = "not verified"; }),
+              Names("what is not verified claims nothing"));
 }
 
 TEST_F(CheckTest, ALimitThatIsNotKeptIsSeen) {

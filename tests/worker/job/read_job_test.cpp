@@ -18,7 +18,7 @@ json valid_job() {
                                "density_g_cm3": 1.15, "price_per_kg": null}}],
     "loads": [{"name": "side", "place": "top", "point_mm": null, "force_n": [20, 0, 0], "radius_mm": 5}],
     "options": {"up": "y", "balance": "require", "size_mm": 200, "skin_nodes": null, "internal_nodes": 40,
-                "voxel_mm": null, "smooth": "auto", "orient": "keep", "no_optimize": false, "order": "paper",
+                "voxel_mm": null, "smooth": "auto", "orient": "keep", "no_optimize": false, "verify": false, "order": "paper",
                 "displacement_limit_mm": 0.05, "seed": 7},
     "threads": 2})");
 }

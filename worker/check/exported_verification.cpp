@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/check/exported_verification.h"
+
+#include <fmt/format.h>
+
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace skinframe::check {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uintmax_t kMaxBytes = std::uintmax_t{1} << 28;
+constexpr std::size_t kVertexBytes = 27, kTriangleBytes = 13;
+
+std::optional<double> number(const json& object, const char* key) {
+  const auto it = object.find(key);
+  if (it == object.end() || it->is_null()) return std::nullopt;
+  return it->get<double>();
+}
+
+Eigen::Vector3d floats_at(const std::string& bytes, std::size_t at) {
+  float v[3];
+  std::memcpy(v, bytes.data() + at, sizeof v);
+  return {v[0], v[1], v[2]};
+}
+
+}  // namespace
+
+ExportedVerification parse_verification(const json& item) {
+  ExportedVerification out;
+  out.verified = item.at("label").get<std::string>() == "verified";
+  if (!out.verified) {
+    out.figures_without = item.size() != 2 || !item.contains("reason");
+    return out;
+  }
+  out.max_displacement_mm = item.at("max_displacement_mm").get<double>();
+  out.max_stress_mpa = item.at("max_stress_mpa").get<double>();
+  out.balance_force = item.at("balance").at("force").get<double>();
+  out.balance_moment = item.at("balance").at("moment").get<double>();
+  out.strength_mpa = number(item, "strength_mpa");
+  out.safety_factor = number(item, "safety_factor");
+  out.buckling_factor = number(item, "buckling_factor");
+  out.pinch_mean_mm = number(item, "pinch_mean_mm");
+  out.pinch_max_mm = number(item, "pinch_max_mm");
+  out.hollow_thickness_mm = number(item, "hollow_thickness_mm");
+  out.hollow_max_displacement_mm = number(item, "hollow_max_displacement_mm");
+  for (const json& load : item.at("loads"))
+    out.loads.push_back({load.at("name").get<std::string>(), load.at("max_displacement_mm").get<double>(),
+                         load.at("max_skin_stress_mpa").get<double>(),
+                         load.at("max_strut_stress_mpa").get<double>(), number(load, "buckling_factor")});
+  for (const json& row : item.at("comparison").at("rows"))
+    out.rows.push_back({row.at("figure").get<std::string>(), row.at("better").get<std::string>(),
+                        number(row, "skin_frame"), number(row, "hollow")});
+  out.verdict = item.at("comparison").at("verdict").get<std::string>();
+  return out;
+}
+
+Result<ExportedDeformation> read_deformation(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) return io_error(fmt::format("{}: {}", path.string(), error.message()));
+  if (size > kMaxBytes) return invalid_input(fmt::format("{}: {} bytes are too many", path.string(), size));
+  std::ifstream in(path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  const std::string end = "end_header\n";
+  const std::size_t header = bytes.find(end);
+  if (!bytes.starts_with("ply\nformat binary_little_endian 1.0\n") || header == std::string::npos)
+    return invalid_input(fmt::format("{}: no binary PLY", path.string()));
+  std::size_t vertices = 0, triangles = 0;
+  std::string properties, word;
+  std::istringstream lines(bytes.substr(0, header));
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    words >> word;
+    if (word == "element") {
+      words >> word;
+      words >> (word == "vertex" ? vertices : triangles);
+    } else if (word == "property" && triangles == 0) {
+      words >> word >> word;
+      properties += word + " ";
+    }
+  }
+  const std::size_t at = header + end.size();
+  if (properties != "x y z red green blue displacement_x displacement_y displacement_z " ||
+      vertices > bytes.size() || triangles > bytes.size() ||
+      bytes.size() != at + vertices * kVertexBytes + triangles * kTriangleBytes)
+    return invalid_input(fmt::format("{}: its header and its size do not agree", path.string()));
+  ExportedDeformation out;
+  const std::string stem = path.stem().string();
+  out.load = stem.substr(stem.find('-') + 1);
+  out.triangles = triangles;
+  for (std::size_t i = 0; i < vertices; ++i) {
+    out.at_mm.push_back(floats_at(bytes, at + i * kVertexBytes));
+    out.displacement_mm.push_back(floats_at(bytes, at + i * kVertexBytes + 15));
+  }
+  return out;
+}
+
+}  // namespace skinframe::check

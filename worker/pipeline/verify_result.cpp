@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/pipeline/verify_result.h"
+
+#include <fmt/format.h>
+
+#include "worker/pipeline/place_loads.h"
+#include "worker/report/verification_json.h"
+#include "worker/verify/verify.h"
+#include "worker/verify/write_deformation.h"
+
+namespace skinframe {
+
+Status verify_result(const PreparedSolid& prepared, const Skin& skin, const JobRequest& job,
+                     const std::filesystem::path& folder, PrinterReport* report, const RunContext& context) {
+  const OptimizeResult& result = *report->optimised;
+  VerifyInput input{.problem = result.problem,
+                    .radii_mm = result.radii_mm,
+                    .skin = skin,
+                    .body = prepared.solid.mesh(),
+                    .solid_volume_mm3 = prepared.solid.volume_mm3(),
+                    .printed_volume_mm3 = report->statistics.printed_volume_mm3,
+                    .place_loads = {},
+                    .loads = loads_at_points(job.loads, prepared.solid)};
+  input.place_loads = [&](const Frame& frame) -> Result<std::vector<LoadCase>> {
+    auto placed = place_loads(job.loads, prepared.solid, frame);
+    if (!placed) return placed.error();
+    return std::move(placed.value().cases);
+  };
+  auto verified = verify(input, context);
+  if (!verified) {
+    if (verified.error().kind == ErrorKind::kCancelled) return verified.error();
+    report->not_verified = verified.error().message;
+    report->warnings.push_back(
+        fmt::format("not verified: the model of shell and struts has no answer for this frame ({}); only the "
+                    "paper's model speaks for it",
+                    report->not_verified));
+    return ok_status();
+  }
+  report->verification = std::move(verified).value();
+  report->statistics.verified = verified_summary_json(*report->verification);
+  for (const Deformation& deformation : report->verification->deformations) {
+    const std::string name = fmt::format("deformation-{}.ply", deformation.name);
+    if (auto written = write_deformation(*report->verification, deformation, folder / name); !written)
+      return written;
+    report->files.push_back(name);
+  }
+  return ok_status();
+}
+
+}  // namespace skinframe

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The last stage of a printer's part: what its frame does under the job's loads by the valid model, beside
+// the paper's figures.
+#pragma once
+
+#include "worker/pipeline/prepare_solid.h"
+#include "worker/report/report.h"
+#include "worker/run/run_context.h"
+
+namespace skinframe {
+
+// Fills report.verification and writes a deformation-NAME.ply for each load case; where that model has no
+// answer, report.not_verified and a warning say why, and the job goes on. Errors: the disk, cancellation.
+Status verify_result(const PreparedSolid& prepared, const Skin& skin, const JobRequest& job,
+                     const std::filesystem::path& folder, PrinterReport* report, const RunContext& context);
+
+}  // namespace skinframe
