@@ -3,19 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/CholmodSupport>
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
 #include <cmath>
 
-#include "worker/run/ordering_turn.h"
 #include "worker/stress/isotropic.h"
+#include "worker/stress/solve_held.h"
 
 namespace skinframe {
 namespace {
 
 using StrainMatrix = Eigen::Matrix<double, 6, 12>;
-using SparseMatrix = Eigen::SparseMatrix<double>;
 
 // Strain from the displacements of the four corners.
 StrainMatrix strain_matrix(const TetMesh& mesh, const std::array<int, 4>& tet) {
@@ -94,21 +92,9 @@ Result<std::vector<ElasticResponse>> solve_elasticity(const TetMesh& mesh, const
   }
   Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(unknowns.count, cases);
   if (unknowns.count > 0) {
-    SparseMatrix stiffness(unknowns.count, unknowns.count);
-    stiffness.setFromTriplets(entries.begin(), entries.end());
-    entries = {};
-    if (context.cancelled()) return cancelled_error();
-    Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> solver;
-    solver.cholmod().print = 0;
-    {
-      const OrderingTurn turn;
-      solver.analyzePattern(stiffness);
-    }
-    solver.factorize(stiffness);
-    if (solver.info() != Eigen::Success)
-      return invalid_input("the tetrahedra are not held by their supports");
-    solution = solver.solve(rhs);
-    if (!solution.allFinite()) return invalid_input("the tetrahedra are not held by their supports");
+    auto solved = solve_held(std::move(entries), rhs, context);
+    if (!solved) return solved.error();
+    solution = std::move(solved).value();
   }
   if (context.cancelled()) return cancelled_error();
 

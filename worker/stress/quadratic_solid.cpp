@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/CholmodSupport>
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
 #include <algorithm>
@@ -11,14 +10,13 @@
 #include <limits>
 #include <map>
 
-#include "worker/run/ordering_turn.h"
 #include "worker/stress/isotropic.h"
+#include "worker/stress/solve_held.h"
 
 namespace skinframe {
 namespace {
 
 using Eigen::Vector3d;
-using SparseMatrix = Eigen::SparseMatrix<double>;
 using Strain = Eigen::Matrix<double, 6, 30>;
 
 constexpr int kEdges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
@@ -197,21 +195,10 @@ Result<std::vector<SolidAnswer>> solve_quadratic_solid(const TetMesh& linear, co
           entries.emplace_back(row, column, k(i, j));
       }
   }
-  SparseMatrix stiffness(free, free);
-  stiffness.setFromTriplets(entries.begin(), entries.end());
-  entries = {};
-  if (context.cancelled()) return cancelled_error();
-  Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> solver;
-  solver.cholmod().print = 0;
-  {
-    const OrderingTurn turn;
-    solver.analyzePattern(stiffness);
-  }
-  solver.factorize(stiffness);
-  if (free == 0 || solver.info() != Eigen::Success)
-    return invalid_input("the solid is not held by its supports");
-  if (context.cancelled()) return cancelled_error();
-  const Eigen::MatrixXd solution = solver.solve(right);
+  if (free == 0) return invalid_input("the solid is not held by its supports");
+  const auto solved = solve_held(std::move(entries), right, context);
+  if (!solved) return solved.error();
+  const Eigen::MatrixXd& solution = *solved;
 
   std::vector<SolidAnswer> answers(cases.size());
   for (std::size_t c = 0; c < cases.size(); ++c)
