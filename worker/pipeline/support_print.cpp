@@ -8,6 +8,7 @@
 
 #include "worker/mesh/write_stl.h"
 #include "worker/skin/triangle_tree.h"
+#include "worker/support/layers.h"
 #include "worker/support/overhang.h"
 #include "worker/support/support_mesh.h"
 
@@ -18,10 +19,32 @@ constexpr double kNeckLengthInSkins = 1.0;
 constexpr double kRoofPitchMm = 1.0;  // of the columns in which overhanging skin is looked for
 constexpr std::size_t kMostRoofPoints = 5000;
 constexpr int kMostRoofRounds = 3;
+constexpr int kMostIslandRounds = 3;
 
 // Where the profile says nothing a neck is half as thick as the thinnest strut.
 double neck_diameter_mm(const PrinterProfile& printer) {
   return printer.neck_diameter_mm.value_or(printer.min_radius_mm);
+}
+
+// Where a layer would start in the air all the same: FlatSkin counts a spot as held by what comes up near it,
+// and a lobe's lowest tip may be there before that. A point half way into the skin above each such part.
+std::vector<Eigen::Vector3d> tips_to_hold(const FrameProblem& problem, const std::vector<double>& radii_mm,
+                                          const PrintedBody& body, const BoundingBox& box,
+                                          const PrinterProfile& printer, const PlannedSupports& supports,
+                                          double plate_reach_mm) {
+  const double eta = printer.min_radius_mm;
+  const double least_mm2 =
+      std::numbers::pi * eta * eta;  // a smaller spot is no wider than the thinnest strut
+  std::vector<Eigen::Vector3d> points;
+  for (const Island& island :
+       find_islands(body, box, problem.frame, radii_mm, supports.plan, *printer.printable_length, {eta, eta})
+           .islands) {
+    if (island.area_mm2 < least_mm2 || island.at_mm.z() <= body.plate_z_mm + plate_reach_mm) continue;
+    const Eigen::Vector3d within = island.at_mm + Eigen::Vector3d(0, 0, 0.5 * body.skin_thickness_mm);
+    const double depth = body.depth_mm(within);
+    points.push_back(depth > 0 && depth <= body.skin_thickness_mm ? within : island.at_mm);
+  }
+  return points;
 }
 
 }  // namespace
@@ -44,19 +67,31 @@ Result<std::optional<PlannedSupports>> plan_print(const FrameProblem& problem,
   const FlatSkin bare(body, skin.body_box_mm, curve, kRoofPitchMm);
   PlannedSupports supports;
   // What holds the frame holds some of the skin, and what is added for the skin may change where it stands.
-  for (int round = 0;; ++round) {
+  for (int round = 0, island_rounds = 0;; ++round) {
     auto plan = plan_supports(problem.frame, curve, body, options, context);
     if (!plan) return plan.error();
     supports.plan = std::move(plan).value();
     FlatSkin held = bare;
     held.hold(holders_of(problem.frame, radii_mm, supports.plan, curve));
     supports.overhang = held.measure();
-    auto more = held.points_to_hold(kMostRoofPoints - options.roof_points.size());
-    std::erase_if(more, [&](const Eigen::Vector3d& point) {  // asked for already, and no use there
-      return std::find(options.roof_points.begin(), options.roof_points.end(), point) !=
-             options.roof_points.end();
-    });
-    if (more.empty() || round == kMostRoofRounds) break;
+    const auto drop_known =
+        [&](std::vector<Eigen::Vector3d>& points) {  // asked for already, and no use there
+          std::erase_if(points, [&](const Eigen::Vector3d& point) {
+            return std::find(options.roof_points.begin(), options.roof_points.end(), point) !=
+                   options.roof_points.end();
+          });
+        };
+    std::vector<Eigen::Vector3d> more;
+    if (round < kMostRoofRounds) more = held.points_to_hold(kMostRoofPoints - options.roof_points.size());
+    drop_known(more);
+    if (more.empty()) {
+      if (context.cancelled()) return cancelled_error();
+      if (island_rounds++ == kMostIslandRounds) break;
+      more =
+          tips_to_hold(problem, radii_mm, body, skin.body_box_mm, printer, supports, options.plate_reach_mm);
+      drop_known(more);
+    }
+    if (more.empty()) break;
     options.roof_points.insert(options.roof_points.end(), more.begin(), more.end());
   }
   supports.cavity_surface_mm2 = surface_area(skin.inner_surface);

@@ -79,6 +79,14 @@ class Layer {
     }
     return all;
   }
+  // Of a part's cells the one nearest to their mean.
+  int most_central(const std::vector<int>& part) const {
+    Vector3d mean = Vector3d::Zero();
+    for (const int cell : part) mean += middle(cell, 0.0) / static_cast<double>(part.size());
+    return *std::min_element(part.begin(), part.end(), [&](int a, int b) {
+      return (middle(a, 0.0) - mean).squaredNorm() < (middle(b, 0.0) - mean).squaredNorm();
+    });
+  }
   bool holds_near(int cell, double reach_mm) const {
     const int cells = static_cast<int>(std::ceil(reach_mm / pitch_mm_));
     const int x = cell % nx_, y = cell / nx_;
@@ -135,7 +143,7 @@ Layers find_islands(const PrintedBody& body, const BoundingBox& box, const Frame
     if (layers.count++ > 0)
       for (const std::vector<int>& part : layer.parts())
         if (std::none_of(part.begin(), part.end(), [&](int cell) { return below.holds_near(cell, reach); }))
-          layers.islands.push_back({layer.middle(part.front(), z),
+          layers.islands.push_back({layer.middle(layer.most_central(part), z),
                                     static_cast<double>(part.size()) * options.pitch_mm * options.pitch_mm});
     below = std::move(layer);
   }

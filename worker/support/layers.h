@@ -15,7 +15,7 @@
 namespace skinframe {
 
 struct Island {
-  Eigen::Vector3d at_mm = Eigen::Vector3d::Zero();  // the middle of one of its cells
+  Eigen::Vector3d at_mm = Eigen::Vector3d::Zero();  // the middle of its most central cell
   double area_mm2 = 0;
 };
 

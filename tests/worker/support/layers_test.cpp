@@ -24,6 +24,7 @@ TEST(Layers, WhatStartsInTheAirIsAnIsland) {
   const Layers layers = find_islands(test::hall(), kBox, bead(20), {1.0}, SupportPlan{}, bridges_10_mm(), {});
   ASSERT_EQ(layers.islands.size(), 1u) << "its lowest layer";
   EXPECT_NEAR(layers.islands[0].at_mm.z(), 19.0, 0.5);
+  EXPECT_LT(layers.islands[0].at_mm.head<2>().norm(), 0.6) << "its middle: there a support holds it";
   EXPECT_NEAR(layers.count, 100, 1);
 }
 
