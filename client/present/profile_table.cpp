@@ -110,7 +110,11 @@ std::string profile_sheet(const v1::PrinterProfile& printer) {
   add_numbers(printer, rows, sources);
   rows.push_back({"drain holes",
                   printer.has_drain_holes()
-                      ? fmt::format("{} mm, {} at least", printer.drain_holes().diameter_mm(),
+                      ? fmt::format("{} mm{}, {} at least", printer.drain_holes().diameter_mm(),
+                                    printer.drain_holes().has_least_diameter_mm()
+                                        ? fmt::format(" (down to {} where there is no room)",
+                                                      printer.drain_holes().least_diameter_mm())
+                                        : "",
                                     printer.drain_holes().least_count())
                       : "-",
                   printer.has_drain_holes() ? sources.mark(printer, "drain_holes") : ""});

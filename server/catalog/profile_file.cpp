@@ -38,6 +38,7 @@ const std::map<std::string, Range>& ranges() {
       {"nozzle_mm", {0.01, 100}},
       {"diameter_mm", {0.1, 1000}},
       {"least_count", {1, 64}},
+      {"least_diameter_mm", {0.1, 1000}},
       {"angle_deg", {0, 90}},
       {"length_mm", {1e-3, 1e6}},
       {"tensile_modulus_mpa", {1e-3, 1e7}},
@@ -276,6 +277,10 @@ absl::Status check_printer(const Reader& reader, const v1::PrinterProfile& print
       printer.max_internal_radius_mm() < printer.min_radius_mm())
     return reader.error(path + ".max_internal_radius_mm",
                         fmt::format("is {:g}, below min_radius_mm", printer.max_internal_radius_mm()));
+  const auto& holes = printer.drain_holes();
+  if (holes.has_least_diameter_mm() && holes.least_diameter_mm() > holes.diameter_mm())
+    return reader.error(path + ".drain_holes.least_diameter_mm",
+                        fmt::format("is {:g}, above diameter_mm", holes.least_diameter_mm()));
   if (printer.has_printable_length())
     return check_curve(reader, path + ".printable_length", printer.printable_length());
   return absl::OkStatus();

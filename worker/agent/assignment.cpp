@@ -158,9 +158,13 @@ Result<json> printer_json(const v1::PrinterProfile& printer, const v1::MaterialP
             {"neck_diameter_mm", or_null(printer.has_neck_diameter_mm(), printer.neck_diameter_mm())}};
   if (printer.has_printable_length())
     p["printable_length"] = printable_length_json(printer.printable_length());
-  if (printer.has_drain_holes())
-    p["drain_holes"] = {{"diameter_mm", printer.drain_holes().diameter_mm()},
-                        {"least_count", printer.drain_holes().least_count()}};
+  if (printer.has_drain_holes()) {
+    const auto& holes = printer.drain_holes();
+    p["drain_holes"] = {
+        {"diameter_mm", holes.diameter_mm()},
+        {"least_count", holes.least_count()},
+        {"least_diameter_mm", or_null(holes.has_least_diameter_mm(), holes.least_diameter_mm())}};
+  }
   json m = {
       {"id", material.id()},
       {"tensile_modulus_mpa", material.tensile_modulus_mpa()},

@@ -53,6 +53,7 @@ Verdict judge(const ExportedPrinter& result, const std::optional<ExportedOrienta
     if (orientation && orientation->printer == result.printer)
       claim_orientation(*orientation, result, outer_mesh, &verdict);
   }
+  claim_drain(result, outer_mesh, cavity, outer, &verdict);
   claim_mechanics(result, &verdict);
   claim_bounds(result, &verdict);
   claim_balance(result, outer_mesh, &verdict);

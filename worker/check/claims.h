@@ -9,7 +9,8 @@
 
 namespace skinframe::check {
 
-// The merged mesh's first triangles are M's own, as the report counts them; the rest bounds the cavity.
+// The merged mesh's first triangles are M's own, as the report counts them; the rest bounds the cavity. Where
+// there are drain holes, their lids close both.
 void split_surfaces(const ExportedPrinter& result, TriangleMesh* outer, TriangleMesh* cavity);
 
 // Watertight, volumes, weight, skin thickness, tray.
@@ -30,6 +31,10 @@ struct WallSample {
 };
 WallSample sample_wall(const Surface& outer, const BoundingBox& box, double depth_mm,
                        double solid_volume_mm3);
+
+// Drain holes and their caps, where the printer's profile has a rule for them.
+void claim_drain(const ExportedPrinter& result, const TriangleMesh& outer_mesh, const TriangleMesh& cavity,
+                 const Surface& outer, Verdict* verdict);
 
 // Directed edges without their opposite, edges with more than two triangles, triangles with two equal
 // corners.

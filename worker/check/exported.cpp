@@ -261,6 +261,11 @@ Status read_listed(const std::filesystem::path& path, const json& item, Exported
     auto deformation = read_deformation(path);
     if (!deformation) return deformation.error();
     printer->verification->deformations.push_back(std::move(deformation).value());
+  } else if (name.starts_with("hole-") && printer->drain) {
+    auto file = read_mesh(path, ReadLimits{}, context);
+    if (!file) return file.error();
+    (name == "hole-lids.stl" ? printer->drain->lids_mesh : printer->drain->caps_mesh) =
+        weld_equal(file->mesh);
   } else if (name.starts_with("support-struts") && printer->supports) {
     auto file = read_mesh(path, ReadLimits{}, context);
     if (!file) return file.error();
@@ -318,6 +323,10 @@ Result<Exported> read_exported(const std::filesystem::path& directory, RunContex
       if (!item.contains("termination")) continue;
       ExportedPrinter printer = parse_printer(item);
       printer.solid_triangles = report->at("mesh").at("triangles").get<std::size_t>();
+      if (item.contains("drain_holes")) {
+        printer.drain = parse_drain(item.at("drain_holes"));
+        printer.solid_triangles = printer.drain->outer_triangles;
+      }
       printer.crossings = item.value("crossings", std::size_t{0});
       const auto folder = directory / printer.printer;
       if (!printer.solid()) {

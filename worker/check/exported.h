@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "worker/check/exported_drain.h"
 #include "worker/check/exported_verification.h"
 #include "worker/check/package.h"
 #include "worker/mesh/triangle_mesh.h"
@@ -118,7 +119,8 @@ struct ExportedPrinter {
   double eta_mm = 0, skin_thickness_mm = 0, max_internal_radius_mm = 0, voxel_mm = 0;
   double density_g_cm3 = 0;
   Eigen::Vector3d tray_mm = Eigen::Vector3d::Zero();
-  std::size_t solid_triangles = 0;
+  std::size_t solid_triangles =
+      0;                      // of the merged mesh's first ones, that are M's or, at holes, parts of M's
   std::size_t crossings = 0;  // pairs of triangles, beside the input's own, that are said to cut each other
   ExportedFrame frame;
   std::optional<TriangleMesh> merged;  // vertices welded where equal; absent where the result has no mesh
@@ -126,6 +128,7 @@ struct ExportedPrinter {
   std::optional<Package> package, beams;  // skin-frame.3mf, frame-beams.3mf
   std::optional<ExportedSupports> supports;
   std::optional<ExportedVerification> verification;
+  std::optional<ExportedDrain> drain;  // of printers whose profile has a rule for drain holes
   std::size_t compact_triangles = 0, compact_crossings = 0;
   double compact_volume_mm3 = 0, compact_deviation_mm = 0;
   bool optimised() const { return termination != "NOT_OPTIMIZED"; }

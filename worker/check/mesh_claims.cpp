@@ -75,6 +75,16 @@ void split_surfaces(const ExportedPrinter& result, TriangleMesh* outer, Triangle
   const std::size_t split = std::min(result.solid_triangles, merged.triangles.size());
   *outer = slice(merged, 0, split);
   *cavity = slice(merged, split, merged.triangles.size());
+  if (!result.drain || result.drain->lids_mesh.triangles.empty()) return;
+  const TriangleMesh& lids = result.drain->lids_mesh;
+  for (TriangleMesh* side : {outer, cavity}) {
+    const int first = static_cast<int>(side->vertices.size());
+    side->vertices.insert(side->vertices.end(), lids.vertices.begin(), lids.vertices.end());
+    for (const auto& [a, b, c] : lids.triangles)
+      side->triangles.push_back(side == outer ? std::array{first + a, first + b, first + c}
+                                              : std::array{first + a, first + c, first + b});
+    *side = weld_equal(*side);
+  }
 }
 
 void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, const TriangleMesh& cavity,
@@ -109,6 +119,7 @@ void claim_mesh(const ExportedPrinter& result, const TriangleMesh& outer_mesh, c
   double shallowest = std::numeric_limits<double>::infinity();
   bool outside = false;
   for (std::size_t i = 0; i < cavity.vertices.size(); ++i) {
+    if (result.drain && in_a_hole(*result.drain, cavity.vertices[i])) continue;
     const double depth =
         i % 16 == 0 ? outer.depth_mm(cavity.vertices[i]) : outer.distance_mm(cavity.vertices[i]);
     outside |= depth < 0;

@@ -85,6 +85,10 @@ void claim_walls(const ExportedPrinter& result, Verdict* verdict) {
     Ray& ray = rays[i];
     const std::size_t t = j - rays.size();
     const auto& [a, b, c] = mesh.triangles[t];
+    // The wall of a drain hole ends what is there to be thin.
+    if (t >= own && result.drain && in_a_hole(*result.drain, mesh.vertices[a]) &&
+        in_a_hole(*result.drain, mesh.vertices[b]) && in_a_hole(*result.drain, mesh.vertices[c]))
+      return;
     double& nearest = t < own ? ray.outside_mm : ray.cavity_mm;
     nearest = std::min(nearest, way_to(ray, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]));
   });

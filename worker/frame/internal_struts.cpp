@@ -32,6 +32,9 @@ class StrutMaker {
         degree_(frame.nodes_mm.size(), 0) {}
 
   bool fits(const Strut& strut) const {
+    const double radius = std::max(
+        options_.radius_mm, options_.slenderness ? frame_.length_mm(strut) / *options_.slenderness : 0.0);
+    if (room_mm(options_.openings, frame_.nodes_mm[strut.a], frame_.nodes_mm[strut.b]) < radius) return false;
     return strut_excess_mm(frame_, strut, options_.radius_mm, skin_) <= inside_tolerance_mm(skin_);
   }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The struts between nodes: from each internal node to its nearest nodes. Only struts that are inside
-// (convex_region.h) and clear of each other are made.
+// (convex_region.h), clear of each other and of the drain holes are made.
 #pragma once
 
 #include <optional>
 #include <vector>
 
+#include "worker/drain/opening.h"
 #include "worker/frame/frame.h"
 #include "worker/skin/build_skin.h"
 
@@ -15,6 +16,7 @@ struct InternalStruts {
   double radius_mm = 0.5;             // eta
   std::optional<double> slenderness;  // alpha: a strut's lower bound is max(eta, l / alpha)
   int neighbours = 9;
+  std::vector<Opening> openings;  // drain holes: no strut comes into one
 };
 
 struct InternalStrutCounts {

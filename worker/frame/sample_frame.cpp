@@ -87,6 +87,34 @@ Status FrameOptions::validate() const {
   return ok_status();
 }
 
+namespace {
+
+Result<SampledFrame> sample_without(const std::vector<std::size_t>& unopened, const Skin& skin,
+                                    const FrameOptions& options, RunContext& context) {
+  FrameOptions fewer = options;
+  fewer.openings.clear();
+  std::vector<std::string> warnings;
+  for (std::size_t k = 0; k < options.openings.size(); ++k) {
+    if (std::find(unopened.begin(), unopened.end(), k) == unopened.end()) {
+      fewer.openings.push_back(options.openings[k]);
+      continue;
+    }
+    const Eigen::Vector3d& at = options.openings[k].centre_mm;
+    warnings.push_back(
+        fmt::format("a drain hole at ({:.1f}, {:.1f}, {:.1f}) mm is left out: the skin's nodes cannot follow "
+                    "its rim; more --skin-nodes or a smaller hole in the printer's profile may help",
+                    at.x(), at.y(), at.z()));
+  }
+  auto sampled = sample_frame(skin, fewer, context);
+  if (sampled) {
+    auto& all = sampled.value().warnings;
+    all.insert(all.end(), warnings.begin(), warnings.end());
+  }
+  return sampled;
+}
+
+}  // namespace
+
 Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options, RunContext& context) {
   if (auto status = options.validate(); !status) return status.error();
   if (skin.inner_surface.triangles.empty()) {
@@ -97,7 +125,8 @@ Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options,
   }
   SampledFrame sampled;
   sampled.finger_edge_mm = finger_edge_mm(options.plate, skin.thickness_mm);
-  auto pieces = choose_pieces(skin, sampled.finger_edge_mm, options.stress, sampled.warnings);
+  auto pieces =
+      choose_pieces(skin, sampled.finger_edge_mm, options.stress, options.openings, sampled.warnings);
   const auto total = wanted_nodes(pieces, options);
   if (!total) return total.error();
   sampled.skin_nodes_requested = *total;
@@ -105,6 +134,8 @@ Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options,
   const double contact_height = skin.plate_z_mm + skin.thickness_mm + options.contact_tolerance_mm;
   auto sample = sample_skin(pieces, skin, options, *total, contact_height, sampled.warnings, context);
   if (!sample) return sample.error();
+  if (!sample->unopened.empty()) return sample_without(sample->unopened, skin, options, context);
+  sampled.openings = options.openings;
   sampled.frame = std::move(sample.value().frame);
   sampled.sharp_chords = std::move(sample.value().sharp_chords);
   sampled.skin_nodes_sampled = sample->nodes_sampled;
@@ -117,15 +148,22 @@ Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options,
   }
 
   const double margin = std::max(2.0 * options.strut_radius_mm, kMarginInEdges * sampled.mean_skin_edge_mm);
-  const InnerRoom room = find_inner_room(skin, margin);
+  InnerRoom room = find_inner_room(skin, margin);
+  std::erase_if(room.samples, [&](const Eigen::Vector3d& p) {
+    return room_mm(options.openings, p, p) < 2.0 * options.strut_radius_mm;
+  });
   const double cell = kCellOfEdge * std::pow(sampled.mean_skin_edge_mm, 3);
   const int internal = options.internal_nodes.value_or(static_cast<int>(
       std::min(kInternalPerSkinNode * sampled.frame.skin_node_count, room.volume_mm3() / cell)));
-  const auto inner = spread_nodes(room, internal, skin, context);
+  auto inner = spread_nodes(room, internal, skin, context);
+  std::erase_if(inner, [&](const Eigen::Vector3d& p) {
+    return room_mm(options.openings, p, p) < options.strut_radius_mm;
+  });
   if (context.cancelled()) return cancelled_error();
   sampled.frame.nodes_mm.insert(sampled.frame.nodes_mm.end(), inner.begin(), inner.end());
   const auto added = add_internal_struts(
-      sampled.frame, {options.strut_radius_mm, options.slenderness, options.neighbours}, skin);
+      sampled.frame, {options.strut_radius_mm, options.slenderness, options.neighbours, options.openings},
+      skin);
   sampled.struts_left_out_crossing = added.struts_crossing;
 
   sampled.contact_nodes =

@@ -14,11 +14,12 @@
 // is divided once where its node needs it, and of two struts that cross the longer is left out
 // (internal_struts.h). Pieces of M1: each is a component of the triangulation. Pieces too small for a
 // triangulation, and pieces that no strut through the solid neck can join to the largest, stay hollow without
-// a frame; a warning says so.
+// a frame; a warning says so. Drain holes: the rim of each is a chain of kRimNodes skin nodes on M1, the
+// triangulation has a hole there, and no strut comes into the opening (drain/opening.h).
 //
 // Guarantees:
-//  1. frame.h's invariants; the skin triangulation is closed, edge-manifold, outward, of the genus of M1's
-//  kept pieces.
+//  1. frame.h's invariants; the skin triangulation is edge-manifold, outward, of the genus of M1's kept
+//  pieces, and closed but for the drain holes.
 //  2. As many skin nodes sampled as asked for, unless the topology of M1 needs more (then a warning).
 //  3. The frame is connected: every node has a path of struts to every contact node. No isolated node.
 //  4. Same input and seed, same frame, at any thread count.
@@ -29,6 +30,7 @@
 #include <utility>
 #include <vector>
 
+#include "worker/drain/opening.h"
 #include "worker/frame/frame.h"
 #include "worker/frame/node_count.h"
 #include "worker/run/run_context.h"
@@ -46,6 +48,7 @@ struct FrameOptions {
   int neighbours = 9;                 // nearest nodes tried from each internal node, [1, 64]
   std::optional<double> slenderness;  // alpha of (4): a strut's least radius is at least l / alpha, > 0
   const StressMap* stress = nullptr;  // none: the density follows curvature alone
+  std::vector<Opening> openings;      // drain holes
   Status validate() const;
 };
 
@@ -69,7 +72,8 @@ struct SampledFrame {
   int skin_struts_outside = 0;          // skin struts whose axis leaves M
   int struts_left_out_crossing = 0;     // internal ones, nearer to others than their least radii allow
   TriangleAngles angles;
-  int pieces = 0;  // of M1 that have a frame
+  int pieces = 0;                 // of M1 that have a frame
+  std::vector<Opening> openings;  // of the options, but for those whose rim the triangulation cannot follow
   std::vector<std::string> warnings;
 };
 

@@ -9,6 +9,7 @@
 
 #include "worker/frame/base_contact.h"
 #include "worker/frame/follow_skin.h"
+#include "worker/frame/open_rims.h"
 #include "worker/frame/piece_joints.h"
 #include "worker/frame/vertex_graph.h"
 
@@ -21,6 +22,7 @@ constexpr double kLeastPieceNodes = 12.0;  // a piece that asks for fewer has no
 constexpr std::size_t kMostPieces = 32;
 constexpr double kPinSpacingInEdges = 1.2;
 constexpr double kLeastOfPiece = 0.5;   // of a piece's volume, within its triangulation
+constexpr double kAtRimInVoxels = 3.0;  // a piece's surface at the rim of a drain hole
 constexpr double kBevelInVoxels = 1.5;  // how far the coarse surface may stand from M1's sharp edges
 
 double lowest_z(const TriangleMesh& mesh) { return bounding_box(mesh).min.z(); }
@@ -113,7 +115,14 @@ Result<PieceTriangulation> triangulate(const Piece& piece, const RunContext& con
 }  // namespace
 
 std::vector<SkinPiece> choose_pieces(const Skin& skin, double finger_edge, const StressMap* stress,
+                                     const std::vector<Opening>& openings,
                                      std::vector<std::string>& warnings) {
+  std::vector<SharpCurve> rims;
+  for (const Opening& opening : openings) rims.push_back(rim_curve(opening, skin));
+  std::vector<SharpCurve> curves;  // rims first: where a sharp edge is too near, it yields
+  for (const SharpCurve& rim : rims)
+    if (!rim.points_mm.empty()) curves.push_back(rim);
+  curves.insert(curves.end(), skin.sharp_edges.begin(), skin.sharp_edges.end());
   std::vector<Piece> pieces;
   int left_out = 0;
   double volume = 0.0;
@@ -127,8 +136,10 @@ std::vector<SkinPiece> choose_pieces(const Skin& skin, double finger_edge, const
       volume += signed_volume(surface);
       continue;
     }
-    piece.sampling.chains =
-        SharpChains(surface, skin.sharp_edges, kBevelInVoxels * skin.field.coarse_voxel_mm());
+    piece.sampling.chains = SharpChains(surface, curves, kBevelInVoxels * skin.field.coarse_voxel_mm());
+    for (std::size_t i = 0; i < rims.size(); ++i)
+      if (has_rim(surface, rims[i], kAtRimInVoxels * skin.field.coarse_voxel_mm()))
+        piece.openings.push_back(i);
     piece.surface = std::move(surface);
     pieces.push_back(std::move(piece));
   }
@@ -186,6 +197,9 @@ Result<SkinSample> sample_skin(std::vector<Piece>& pieces, const Skin& skin, con
       const auto followed = follow_skin(mesh, held, piece.value().sharp_chords, skin, context);
       if (!followed) return followed.error();
       struts_left += followed->edges_left;
+      for (const std::size_t k : pieces[i].openings)
+        if (!open_rim(mesh, piece.value().sharp_chords, options.openings[k], skin.thickness_mm))
+          sample.unopened.push_back(k);
       const int first = static_cast<int>(frame.nodes_mm.size());
       for (const auto& [a, b] : piece->sharp_chords) sample.sharp_chords.emplace_back(first + a, first + b);
       add_skin_piece(frame, mesh);

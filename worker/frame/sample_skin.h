@@ -19,10 +19,12 @@ struct SkinPiece {
   std::vector<double> edge_length_mm;
   double demand = 0.0;
   PieceSampling sampling;
+  std::vector<std::size_t> openings;  // drain holes whose rim is on it, by number
 };
 
 // The largest first; what is left out is told in the warnings.
 std::vector<SkinPiece> choose_pieces(const Skin& skin, double finger_edge, const StressMap* stress,
+                                     const std::vector<Opening>& openings,
                                      std::vector<std::string>& warnings);
 
 // Of all pieces together, from the options or the pieces' demand. Errors: kInvalidInput beyond kMaxSkinNodes.
@@ -32,6 +34,7 @@ struct SkinSample {
   Frame frame;
   std::vector<std::pair<int, int>> sharp_chords;
   int nodes_sampled = 0;
+  std::vector<std::size_t> unopened;  // drain holes whose rim is not followed, by number
 };
 
 // Skin nodes, their triangulation and the joints between pieces. Pieces that cannot be joined are taken out

@@ -25,10 +25,10 @@ std::vector<std::vector<Eigen::Vector3d>> arcs_of(const SharpCurve& curve) {
   if (!curve.closed) return {curve.points_mm};
   std::vector<std::vector<Eigen::Vector3d>> arcs;
   const std::size_t last = curve.points_mm.size() - 1;
-  for (std::size_t i = 0; i < kArcsOfALoop; ++i)
-    arcs.emplace_back(
-        curve.points_mm.begin() + static_cast<std::ptrdiff_t>(i * last / kArcsOfALoop),
-        curve.points_mm.begin() + static_cast<std::ptrdiff_t>((i + 1) * last / kArcsOfALoop + 1));
+  const std::size_t count = curve.corners > 0 ? curve.corners : kArcsOfALoop;
+  for (std::size_t i = 0; i < count; ++i)
+    arcs.emplace_back(curve.points_mm.begin() + static_cast<std::ptrdiff_t>(i * last / count),
+                      curve.points_mm.begin() + static_cast<std::ptrdiff_t>((i + 1) * last / count + 1));
   return arcs;
 }
 
@@ -140,23 +140,25 @@ SharpChains::SharpChains(TriangleMesh& piece, const std::vector<SharpCurve>& cur
   const ChainFinder finder(piece, reach, *this);
   const auto apart = stand_apart(curves, kApartInReaches * reach);
   for (std::size_t i = 0; i < curves.size(); ++i) {
-    if (!apart[i] || curves[i].length_mm() < kLeastLengthInReaches * reach) continue;
+    const bool wanted = curves[i].corners > 0;
+    if (!wanted && (!apart[i] || curves[i].length_mm() < kLeastLengthInReaches * reach)) continue;
     for (const auto& points : arcs_of(curves[i])) {
       const Chain chain = chain_of(points);
       const auto path = finder.along(chain);
-      if (path.size() > 1) add(piece, chain, path);
+      if (path.size() > 1) add(piece, chain, path, wanted);
     }
   }
 }
 
 SharpChains::Chain SharpChains::chain_of(const std::vector<Eigen::Vector3d>& points) {
-  Chain chain{points, {0.0}};
+  Chain chain{points, {0.0}, 0};
   for (std::size_t i = 1; i < points.size(); ++i)
     chain.along_mm.push_back(chain.along_mm.back() + (points[i] - points[i - 1]).norm());
   return chain;
 }
 
-void SharpChains::add(TriangleMesh& piece, const Chain& chain, const std::vector<int>& path) {
+void SharpChains::add(TriangleMesh& piece, const Chain& chain, const std::vector<int>& path,
+                      bool keeps_its_ends) {
   const int number = static_cast<int>(chains_.size());
   for (const int end : {path.front(), path.back()}) {
     if (roles_[end] == Role::kCorner) continue;
@@ -175,6 +177,8 @@ void SharpChains::add(TriangleMesh& piece, const Chain& chain, const std::vector
     before = along;
   }
   chains_.push_back(chain);
+  chains_.back().inner = static_cast<int>(path.size()) - 2;
+  if (keeps_its_ends) chain_between_[std::minmax(path.front(), path.back())] = number;
 }
 
 Eigen::Vector3d SharpChains::Chain::at(double along) const {
@@ -204,6 +208,7 @@ void SharpChains::drop(int vertex) {
   SKINFRAME_CHECK(role(vertex) == Role::kInner);
   const Link link = links_[vertex];
   roles_[vertex] = Role::kNone;
+  --chains_[link.chain].inner;
   if (role(link.before) == Role::kInner) links_[link.before].after = link.after;
   if (role(link.after) == Role::kInner) links_[link.after].before = link.before;
 }

@@ -89,8 +89,10 @@ PrinterRequest parse_printer(const json& item) {
     request.printer.printable_length = parse_printable_length(printer.at("printable_length"));
   if (is_given(printer, "drain_holes")) {
     const json& rule = printer.at("drain_holes");
-    request.printer.drain_holes = DrainHoleRule{number(rule, "diameter_mm", 0.1, 1000),
-                                                optional_count(rule, "least_count", 1, 64).value_or(1)};
+    const double diameter_mm = number(rule, "diameter_mm", 0.1, 1000);
+    request.printer.drain_holes =
+        DrainHoleRule{diameter_mm, optional_count(rule, "least_count", 1, 64).value_or(1),
+                      optional_number(rule, "least_diameter_mm", 0.1, diameter_mm).value_or(diameter_mm)};
   }
   if (is_given(printer, "build_direction"))
     request.printer.build_direction = choice<BuildDirection>(

@@ -22,6 +22,17 @@ json vectors_json(const std::vector<Eigen::Vector3d>& vectors) {
   return list;
 }
 
+json openings_json(const std::vector<Opening>& openings) {
+  json list = json::array();
+  for (const Opening& opening : openings)
+    list.push_back({{"centre_mm", vectors_json({opening.centre_mm})[0]},
+                    {"axis", vectors_json({opening.axis})[0]},
+                    {"radius_mm", opening.radius_mm},
+                    {"rise_mm", opening.rise_mm},
+                    {"clear_mm", opening.clear_mm}});
+  return list;
+}
+
 json reduced_json(const OptimizeResult& result) {
   json struts = json::array();
   for (const Strut& strut : result.problem.frame.struts)
@@ -48,6 +59,31 @@ double positive(const json& object, const char* key) {
   return value;
 }
 
+Eigen::Vector3d vector_of(const json& value, const char* field) {
+  if (value.size() != 3) refuse(field);
+  const Eigen::Vector3d v(value[0].get<double>(), value[1].get<double>(), value[2].get<double>());
+  if (!v.allFinite()) refuse(field);
+  return v;
+}
+
+std::vector<Opening> parse_openings(const json& list) {
+  constexpr std::size_t kMostOpenings = 1000;
+  if (list.size() > kMostOpenings) refuse("sampling.openings has too many");
+  std::vector<Opening> openings;
+  for (const json& item : list) {
+    Opening opening;
+    opening.centre_mm = vector_of(item.at("centre_mm"), "sampling.openings.centre_mm");
+    opening.axis = vector_of(item.at("axis"), "sampling.openings.axis");
+    opening.radius_mm = positive(item, "radius_mm");
+    opening.rise_mm = positive(item, "rise_mm");
+    opening.clear_mm = positive(item, "clear_mm");
+    if (std::abs(opening.axis.norm() - 1.0) > 1e-9 || !(opening.radius_mm > 0.0))
+      refuse("sampling.openings: no axis or radius");
+    openings.push_back(opening);
+  }
+  return openings;
+}
+
 SampledFrame parse_sampling(const json& sampling, Frame frame) {
   SampledFrame out;
   for (const json& node : sampling.at("contact_nodes"))
@@ -62,6 +98,7 @@ SampledFrame parse_sampling(const json& sampling, Frame frame) {
   out.struts_left_out_crossing = sampling.at("struts_left_out_crossing").get<int>();
   out.skin_struts_outside = sampling.at("skin_struts_outside").get<int>();
   out.pieces = sampling.at("pieces").get<int>();
+  out.openings = parse_openings(sampling.at("openings"));
   for (const json& warning : sampling.at("warnings")) out.warnings.push_back(warning.get<std::string>());
   out.angles = measure_angles(frame);
   out.frame = std::move(frame);
@@ -130,6 +167,7 @@ json initial_frame_json(const FrameProblem& posed, const SampledFrame& sampled, 
                           {"struts_left_out_crossing", sampled.struts_left_out_crossing},
                           {"skin_struts_outside", sampled.skin_struts_outside},
                           {"pieces", sampled.pieces},
+                          {"openings", openings_json(sampled.openings)},
                           {"warnings", sampled.warnings}};
   document["reduced"] = result != nullptr ? reduced_json(*result) : json(nullptr);
   if (result != nullptr) add_bound_proofs(*result, posed, document);

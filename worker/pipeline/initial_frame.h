@@ -6,7 +6,7 @@
 //   "sampling": {"key": of sampling_key(), "finger_edge_mm", "contact_nodes": [..], "skin_nodes_requested",
 //                "skin_nodes_sampled", "density", "mean_skin_edge_mm", "worst_outward_chord_mm",
 //                "worst_inward_chord_mm", "skin_struts_outside", "struts_left_out_crossing", "pieces",
-//                "warnings": [..]}
+//                "openings": [{"centre_mm", "axis", "radius_mm", "rise_mm", "clear_mm"}..], "warnings": [..]}
 //   "reduced":  null, or what the optimiser left of it: {"nodes": [[x,y,z]..], "struts": [[a,b,skin]..],
 //                "radii_mm": [..], "volume_mm3"}
 //

@@ -33,9 +33,19 @@ std::vector<std::string> honest_warnings(const PrinterProfile& printer) {
           "struts are made: struts that overhang need the slicer's own supports"};
     case PrintProcess::kPowder:
     case PrintProcess::kResin:
-      return {"drain holes are not cut yet: what fills the cavity while printing stays inside"};
+      if (printer.drain_holes) return {};
+      return {
+          "the printer's profile asks for no drain holes, so none are made: what fills the cavity while "
+          "printing stays inside"};
   }
   return {};
+}
+
+// Frames with other holes do not serve.
+std::string rule_key(const PrinterProfile& printer) {
+  if (!printer.drain_holes) return {};
+  const DrainHoleRule& rule = *printer.drain_holes;
+  return fmt::format("-{}-{}-{}", rule.diameter_mm, rule.least_count, rule.least_diameter_mm);
 }
 
 PrinterReport begin_report(const PrinterRequest& request) {
@@ -107,7 +117,7 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, SharedSkins
   }
 
   const FrameOptions asked = frame_options(request, job);
-  const std::string key = sampling_key(*skin, asked, context);
+  const std::string key = sampling_key(*skin, asked, context) + rule_key(printer);
   std::optional<InitialFrame> earlier;
   if (job.warm_start) {
     report.warm_start = WarmStartReport{job.warm_start->job_id, {}, {}};
@@ -138,8 +148,9 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, SharedSkins
                     "balance is not enforced (see --up and --balance)",
                     -prepared.contact.margin_mm));
 
-  SolveSetting setting{prepared, *skin, printer,      job.options,
-                       balance,  laps,  std::nullopt, observer.checkpoints};
+  SolveSetting setting{prepared,         *skin, printer,      job.options,
+                       balance,          laps,  std::nullopt, observer.checkpoints,
+                       sampled->openings};
   if (earlier && earlier->reduced && !job.options.no_optimize) {
     SampledFrame reduced = *sampled;
     reduced.frame = earlier->reduced->frame;
@@ -179,8 +190,7 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, SharedSkins
   if (auto written = write_json(folder / "initial-frame.json", initial); !written) return written.error();
   report.files.push_back("initial-frame.json");
   if (!merged.value()) return report;
-  const PrintableMesh& printable = *merged.value();
-  if (auto written = write_printable(printable, prepared, request, folder, &report, context); !written)
+  if (auto written = write_printable(*merged.value(), prepared, request, folder, &report, context); !written)
     return written.error();
   if (report.supports) {
     if (auto written = write_supports(result.problem.frame, *skin, request, folder, &report); !written)

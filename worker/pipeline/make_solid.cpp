@@ -46,11 +46,12 @@ Status make_solid(const PreparedSolid& prepared, const Skin& skin, const Printer
         "contact; see --up and --balance";
     return ok_status();
   }
-  PrintableMesh printable;
+  MergedPrint print;
+  PrintableMesh& printable = print.closed;
   printable.mesh = solid.mesh();
   printable.volume_mm3 = solid.volume_mm3();
   printable.voxel_mm = skin.voxel_mm;
-  return write_printable(printable, prepared, printer, folder, report, context);
+  return write_printable(print, prepared, printer, folder, report, context);
 }
 
 }  // namespace skinframe

@@ -81,9 +81,12 @@ Result<PosedProblem> pose_problem(const Solid& solid, const Contact& contact, co
   for (std::size_t j = 0; j < sampled.frame.struts.size(); ++j) {
     // What would stand out of M1 is not printed, so it must not be counted on: (7) bounds the radius beside
     // (10).
-    const double upper = sampled.frame.struts[j].is_skin
-                             ? printer.skin_thickness_mm()
-                             : std::min(printer.max_internal_radius_mm, clearance_mm[j]);
+    // So must what would stand in a drain hole.
+    const Strut& strut = sampled.frame.struts[j];
+    const double upper = strut.is_skin ? printer.skin_thickness_mm()
+                                       : std::min({printer.max_internal_radius_mm, clearance_mm[j],
+                                                   room_mm(sampled.openings, sampled.frame.nodes_mm[strut.a],
+                                                           sampled.frame.nodes_mm[strut.b])});
     problem.bounds.push_back({printer.min_radius_mm, std::max(upper, printer.min_radius_mm)});
   }
   problem.fixed = hold_contact(sampled.frame, sampled.contact_nodes, Supports::kLeast);
@@ -99,6 +102,11 @@ Result<PosedProblem> pose_problem(const Solid& solid, const Contact& contact, co
   problem.free_nodes.assign(sampled.frame.nodes_mm.size(), false);
   for (std::size_t i = sampled.frame.skin_node_count; i < problem.free_nodes.size(); ++i)
     problem.free_nodes[i] = true;
+  // Struts beside a drain hole stay where they are, clear of it.
+  for (const Strut& strut : sampled.frame.struts)
+    if (!strut.is_skin && room_mm(sampled.openings, sampled.frame.nodes_mm[strut.a],
+                                  sampled.frame.nodes_mm[strut.b]) < printer.max_internal_radius_mm)
+      problem.free_nodes[strut.a] = problem.free_nodes[strut.b] = false;
   if (auto valid = validate(problem); !valid) return valid.error();
   return PosedProblem{std::move(problem), std::move(placed.value().warnings)};
 }

@@ -27,7 +27,8 @@ enum class BuildDirection { kUp, kHanging };
 // Holes through which powder or resin leaves the cavity.
 struct DrainHoleRule {
   double diameter_mm = 0;
-  int least_count = 0;
+  int least_count = 0;           // of the largest cavity
+  double least_diameter_mm = 0;  // where the diameter has no room, > 0 and at most that
 };
 
 struct PrinterProfile {

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "worker/drain/place_openings.h"
+#include "worker/frame/vertex_graph.h"
 #include "worker/pipeline/place_loads.h"
 
 namespace skinframe {
@@ -10,6 +12,17 @@ namespace {
 
 // Below this share of the solid the map says too little about it to go without a word.
 constexpr double kLeastCovered = 0.8;
+
+PlacedOpenings place_holes(const PreparedSolid& prepared, const Skin& skin, const StressMap* stress,
+                           const DrainHoleRule& asked, const std::vector<Load>& loads,
+                           const RunContext& context) {
+  const OpeningRule rule{asked.diameter_mm, asked.least_diameter_mm, asked.least_count};
+  std::vector<KeepAway> keep_away;
+  for (const StressLoad& load : loads_at_points(loads, prepared.solid))
+    keep_away.push_back({load.point_mm, load.radius_mm});
+  return place_openings(prepared.solid.mesh(), skin, prepared.contact.hull, stress, rule,
+                        split_pieces(skin.inner_surface), keep_away, context);
+}
 
 }  // namespace
 
@@ -63,6 +76,14 @@ Result<SampledFrame> sample_by_stress(const PreparedSolid& prepared, const Skin&
   context.report({.stage = Stage::kSample});
   FrameOptions options = frame_options(request, job);
   options.stress = stress ? &*stress : nullptr;
+  if (request.printer.drain_holes) {
+    auto placed =
+        place_holes(prepared, skin, options.stress, *request.printer.drain_holes, job.loads, context);
+    if (context.cancelled()) return cancelled_error();
+    options.openings = std::move(placed.openings);
+    report->warnings.insert(report->warnings.end(), placed.warnings.begin(), placed.warnings.end());
+    laps.lap("drain");
+  }
   auto sampled = sample_frame(skin, options, context);
   if (!sampled) return sampled.error();
   report->warnings.insert(report->warnings.end(), sampled->warnings.begin(), sampled->warnings.end());

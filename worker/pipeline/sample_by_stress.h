@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The initial frame of one printer: a stress map of the solid under the job's loads, and nodes whose density
-// follows it. Where no map can be made, curvature alone leads, and a warning says why.
+// follows it. Where no map can be made, curvature alone leads, and a warning says why. Drain holes, where the
+// printer's profile has a rule for them, are placed before.
 #pragma once
 
 #include "worker/frame/sample_frame.h"

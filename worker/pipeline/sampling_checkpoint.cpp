@@ -17,11 +17,16 @@ void pass(Archive& archive, TriangleAngles& angles) {
 }
 
 template <class Archive>
+void pass(Archive& archive, Opening& opening) {
+  archive(opening.centre_mm, opening.axis, opening.radius_mm, opening.rise_mm, opening.clear_mm);
+}
+
+template <class Archive>
 void pass(Archive& archive, SampledFrame& sampled) {
   archive(sampled.frame, sampled.contact_nodes, sampled.skin_nodes_requested, sampled.skin_nodes_sampled,
           sampled.finger_edge_mm, sampled.mean_skin_edge_mm, sampled.worst_outward_chord_mm,
           sampled.worst_inward_chord_mm, sampled.skin_struts_outside, sampled.struts_left_out_crossing,
-          sampled.angles, sampled.pieces, sampled.warnings);
+          sampled.angles, sampled.pieces, sampled.openings, sampled.warnings);
 }
 
 template <class Archive>
@@ -84,7 +89,7 @@ Result<SampledFrame> sample_or_go_on(const std::string& key,
   SamplingState state{*sampled, *report->sampling, {}, {}};
   state.warnings.assign(report->warnings.begin() + static_cast<std::ptrdiff_t>(warnings_before),
                         report->warnings.end());
-  for (const char* stage : {"stress", "sample"})
+  for (const char* stage : {"stress", "drain", "sample"})
     if (const auto at = report->seconds.find(stage); at != report->seconds.end()) state.seconds.insert(*at);
   ByteWriter bytes;
   bytes(state);

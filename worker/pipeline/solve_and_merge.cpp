@@ -12,16 +12,29 @@ namespace {
 
 // The constraint's name in the report when only the print, not the model, fails to stand.
 constexpr const char* kPrintedBalance = "balance of the printed mesh";
+constexpr double kRadiusTolerance = 0.01;  // relative, of a strut beside a drain hole
 
-OptimizeOptions optimize_options(const JobOptions& options, const Skin& skin) {
+bool openings_are_free(const Frame& frame, const std::vector<double>& radii_mm,
+                       const std::vector<Opening>& openings) {
+  for (std::size_t j = 0; j < frame.struts.size(); ++j) {
+    const Strut& strut = frame.struts[j];
+    if (!strut.is_skin && room_mm(openings, frame.nodes_mm[strut.a], frame.nodes_mm[strut.b]) <
+                              radii_mm[j] * (1.0 - kRadiusTolerance))
+      return false;
+  }
+  return true;
+}
+
+OptimizeOptions optimize_options(const JobOptions& options, const Skin& skin,
+                                 const std::vector<Opening>& openings) {
   OptimizeOptions out;
   out.order =
       options.order == StageOrder::kPaper ? OptimizeOptions::Order::kPaper : OptimizeOptions::Order::kTight;
   out.convex_regions = [&skin](const Frame& frame, const std::vector<double>& radii_mm) {
     return convex_regions(frame, radii_mm, skin);
   };
-  out.accepts = [&skin](const Frame& frame, const std::vector<double>& radii_mm) {
-    return struts_inside(frame, radii_mm, skin);
+  out.accepts = [&skin, &openings](const Frame& frame, const std::vector<double>& radii_mm) {
+    return struts_inside(frame, radii_mm, skin) && openings_are_free(frame, radii_mm, openings);
   };
   return out;
 }
@@ -97,7 +110,7 @@ Status solve_frame(const FrameProblem& problem, const SolveSetting& setting, Pri
   }
   context.report({.stage = Stage::kSize, .struts_left = static_cast<int>(problem.frame.struts.size())});
   if (context.cancelled()) return cancelled_error();
-  OptimizeOptions how = optimize_options(options, setting.skin);
+  OptimizeOptions how = optimize_options(options, setting.skin, setting.openings);
   how.checkpoints = setting.checkpoints;
   auto optimised = [&] {
     if (!setting.start) return optimize_frame(problem, how, context);
@@ -118,14 +131,14 @@ Status solve_frame(const FrameProblem& problem, const SolveSetting& setting, Pri
 
 }  // namespace
 
-Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting, FrameProblem* problem,
-                                                     PrinterReport* report, RunContext& context) {
+Result<std::optional<MergedPrint>> solve_and_merge(const SolveSetting& setting, FrameProblem* problem,
+                                                   PrinterReport* report, RunContext& context) {
   for (int round = 0;; ++round) {
     auto solved = solve_frame(*problem, setting, report, context);
     if (!solved) return solved.error();
     setting.laps.lap("optimize");
     fill_statistics(setting, report);
-    if (report->reason != Reason::kNone) return std::optional<PrintableMesh>();
+    if (report->reason != Reason::kNone) return std::optional<MergedPrint>();
 
     auto supports = plan_print(report->optimised->problem, report->optimised->radii_mm,
                                setting.prepared.solid.mesh(), setting.skin, setting.printer, context);
@@ -141,11 +154,17 @@ Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting
                               ExportOptions{.voxel_mm = setting.options.voxel_mm}, context);
     if (!merged) return merged.error();
     setting.laps.lap("export");
+    MergedPrint print{std::move(merged).value(), {}};
+    if (!setting.openings.empty()) {
+      print.opened =
+          open_holes(print.closed.mesh, setting.prepared.solid.mesh().triangles.size(), setting.openings);
+      setting.laps.lap("holes");
+    }
     const double margin_mm =
-        signed_margin_mm(setting.prepared.contact.hull, volume_centroid(merged->mesh).head<2>());
+        signed_margin_mm(setting.prepared.contact.hull, volume_centroid(print.mesh()).head<2>());
     if (setting.prepared.contact.hull.size() >= 3) report->statistics.printed_balance_margin_mm = margin_mm;
     if (report->statistics.balance != "holds" || margin_mm >= 0)
-      return std::optional<PrintableMesh>(std::move(merged).value());
+      return std::optional<MergedPrint>(std::move(print));
     if (round == kMaxBalanceRounds) {
       report->reason = Reason::kInfeasible;
       report->termination = "INFEASIBLE";
@@ -155,7 +174,7 @@ Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting
           -margin_mm);
       fill_statistics(setting, report);
       report->statistics.printed_balance_margin_mm.reset();  // nothing is exported
-      return std::optional<PrintableMesh>();
+      return std::optional<MergedPrint>();
     }
     for (HalfPlane& plane : problem->balance) plane.offset_mm -= kBalanceReserveMm - margin_mm;
   }

@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "worker/export/open_holes.h"
 #include "worker/pipeline/earlier_frame.h"
 #include "worker/pipeline/laps.h"
 #include "worker/pipeline/pose_problem.h"
@@ -32,12 +33,21 @@ struct SolveSetting {
   Laps& laps;
   std::optional<ReducedStart> start;
   Checkpoints* checkpoints = nullptr;
+  std::vector<Opening> openings;  // drain holes to cut
+};
+
+// The merged mesh, and the same with its drain holes.
+struct MergedPrint {
+  PrintableMesh closed;
+  std::optional<OpenedMesh> opened;  // none: no holes were asked for
+  const TriangleMesh& mesh() const { return opened ? opened->mesh : closed.mesh; }
+  double volume_mm3() const { return opened ? opened->volume_mm3 : closed.volume_mm3; }
 };
 
 // Fills the report's optimised frame, supports, statistics, termination and reason. No mesh when the job is
 // infeasible. `problem` is left as it was solved last: its balance half planes drawn in as the print asked
 // for.
-Result<std::optional<PrintableMesh>> solve_and_merge(const SolveSetting& setting, FrameProblem* problem,
-                                                     PrinterReport* report, RunContext& context);
+Result<std::optional<MergedPrint>> solve_and_merge(const SolveSetting& setting, FrameProblem* problem,
+                                                   PrinterReport* report, RunContext& context);
 
 }  // namespace skinframe

@@ -41,6 +41,29 @@ json smoothing_json(const SmoothingFacts& smoothing) {
           {"added_skin_mm3", smoothing.added_skin_mm3}};
 }
 
+json drain_json(const DrainFacts& drain, double thickness_mm) {
+  json sealed = json::array();
+  const auto list = [](const std::vector<Opening>& openings) {
+    json out = json::array();
+    for (const Opening& opening : openings)
+      out.push_back({{"centre_mm", vector_json(opening.centre_mm)},
+                     {"axis", vector_json(opening.axis)},
+                     {"diameter_mm", 2.0 * opening.radius_mm},
+                     {"rise_mm", opening.rise_mm},
+                     {"clear_mm", opening.clear_mm}});
+    return out;
+  };
+  for (const SealedVoid& hollow : drain.sealed)
+    sealed.push_back({{"volume_mm3", hollow.volume_mm3}, {"centre_mm", vector_json(hollow.centre_mm)}});
+  return {{"rule", {{"diameter_mm", drain.rule_diameter_mm}, {"least_count", drain.rule_least_count}}},
+          {"holes", list(drain.openings)},
+          {"uncut", list(drain.uncut)},
+          {"outer_triangles", drain.outer_triangles},
+          {"caps",
+           {{"count", drain.caps}, {"clearance_mm", drain.cap_clearance_mm}, {"thickness_mm", thickness_mm}}},
+          {"sealed_voids", sealed}};
+}
+
 json thin_json(const ThinParts& thin) {
   json regions = json::array();
   for (const ThinRegion& region : thin.regions)
@@ -265,6 +288,7 @@ json to_json(const PrinterReport& report) {
     out["warm_start"] = {{"job_id", report.warm_start->job_id},
                          {"reused", report.warm_start->reused},
                          {"detail", report.warm_start->detail}};
+  if (report.drain) out["drain_holes"] = drain_json(*report.drain, report.skin_thickness_mm);
   if (report.supports && report.voxel_mm) out["supports"] = to_json(*report.supports);
   if (s.balance_margin_mm) out["balance_margin_mm"] = *s.balance_margin_mm;
   if (s.printed_balance_margin_mm) out["printed_balance_margin_mm"] = *s.printed_balance_margin_mm;

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "worker/export/open_holes.h"
 #include "worker/export/printable.h"
 #include "worker/frame/sample_frame.h"
 #include "worker/optimize/optimize_frame.h"
@@ -120,6 +121,19 @@ struct SupportFacts {
   double internal_volume_mm3 = 0, external_volume_mm3 = 0, weight_g = 0;
 };
 
+// Of the drain holes: the "drain_holes" object, there where the printer's profile has a rule for them.
+struct DrainFacts {
+  double rule_diameter_mm = 0;
+  int rule_least_count = 0;
+  std::vector<Opening> openings;  // as cut
+  std::vector<Opening> uncut;     // the frame has their rims, but the skin is closed there
+  std::size_t outer_triangles =
+      0;                        // of skin-frame.stl: its first ones, which with hole-lids.stl are M's surface
+  int caps = 0;                 // in hole-caps.stl, as thick as the skin
+  double cap_clearance_mm = 0;  // of their radius within the hole's
+  std::vector<SealedVoid> sealed;  // what no hole reaches, the largest first
+};
+
 struct PlannedSupports {
   SupportPlan plan;
   PrintState state;
@@ -155,6 +169,7 @@ struct PrinterReport {
   std::optional<PlannedSupports> supports;   // of extrusion printers
   std::optional<Verification> verification;  // by the valid model
   std::string not_verified;                  // why not, where that model was asked and has no answer
+  std::optional<DrainFacts> drain;          // of powder and resin printers
   std::map<std::string, double> seconds;
 };
 nlohmann::json to_json(const PrinterReport& report);

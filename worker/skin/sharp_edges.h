@@ -24,6 +24,7 @@ inline constexpr double kLeastCurveInThicknesses = 6.0;  // shorter ones are no 
 struct SharpCurve {
   std::vector<Eigen::Vector3d> points_mm;  // on M1, at most one coarse voxel apart; first = last when closed
   bool closed = false;
+  int corners = 0;  // of a closed one that is wanted for its own sake: that many of its nodes, evenly spread
   double length_mm() const;
 };
 

@@ -27,7 +27,7 @@ constexpr char kPrinter[] = R"({
       "is_default": false,
       "source": "measured on 2026-11-20"
     },
-    "drain_holes": {"diameter_mm": 20, "least_count": 2},
+    "drain_holes": {"diameter_mm": 20, "least_count": 2, "least_diameter_mm": 3.5},
     "source": "its data sheet"
   }
 })";
@@ -55,6 +55,7 @@ TEST(ProfileFile, EveryFieldArrivesAndNullIsAbsent) {
   EXPECT_FALSE(p.printable_length().points(0).has_length_mm());
   EXPECT_EQ(p.printable_length().points(2).length_mm(), 10);
   EXPECT_EQ(p.drain_holes().least_count(), 2);
+  EXPECT_EQ(p.drain_holes().least_diameter_mm(), 3.5);
 }
 
 TEST(ProfileFile, AMaterialArrives) {
@@ -99,6 +100,7 @@ TEST(ProfileFile, WhatIsWrongIsSaidWithFileLineAndField) {
       {", \"least_count\": 2", "", "mine.json:18: printer.drain_holes.least_count: is missing"},
       {"\"least_count\": 2", "\"least_count\": 2.5",
        "mine.json:18: printer.drain_holes.least_count: is not a whole number"},
+      {"3.5", "21", "mine.json:18: printer.drain_holes.least_diameter_mm: is 21, above diameter_mm"},
       {"\"source\": \"its data sheet\"", "\"source\": null",
        "mine.json:6: printer.min_radius_mm: has no source"},
       {"\"source\": \"its data sheet\"", "\"sources\": {\"min_radius\": \"x\"}",

@@ -79,12 +79,14 @@ TEST(AssignmentTranslation, WhatThePrinterPrintsWithoutSupportIsHandedOn) {
   curve->set_source("an assumption");
   printer->mutable_drain_holes()->set_diameter_mm(20);
   printer->mutable_drain_holes()->set_least_count(2);
+  printer->mutable_drain_holes()->set_least_diameter_mm(3.5);
   printer->set_build_direction(v1::BUILD_DIRECTION_HANGING);
   printer->set_neck_diameter_mm(0.8);
   const json p = translated(a)["printers"][0]["printer"];
   EXPECT_EQ(p["printable_length"], json::parse(R"({"points": [{"angle_deg": 45.0, "length_mm": null},
     {"angle_deg": 90.0, "length_mm": 10.0}], "is_default": true, "source": "an assumption"})"));
-  EXPECT_EQ(p["drain_holes"], json::parse(R"({"diameter_mm": 20.0, "least_count": 2})"));
+  EXPECT_EQ(p["drain_holes"],
+            json::parse(R"({"diameter_mm": 20.0, "least_count": 2, "least_diameter_mm": 3.5})"));
   EXPECT_EQ(p["build_direction"], "hanging");
   EXPECT_EQ(p["neck_diameter_mm"], 0.8);
 }

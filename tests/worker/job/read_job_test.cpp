@@ -46,7 +46,7 @@ TEST(ReadJob, WhatThePrinterPrintsWithoutSupportArrives) {
   document["printers"][0]["printer"].update(json::parse(R"({
     "printable_length": {"points": [{"angle_deg": 45, "length_mm": null}, {"angle_deg": 90, "length_mm": 10}],
                          "is_default": true, "source": "an assumption"},
-    "drain_holes": {"diameter_mm": 20, "least_count": 2}, "build_direction": "hanging", "neck_diameter_mm": 0.8})"));
+    "drain_holes": {"diameter_mm": 20, "least_count": 2, "least_diameter_mm": 3.5}, "build_direction": "hanging", "neck_diameter_mm": 0.8})"));
   const auto job = parse_job(document);
   ASSERT_TRUE(job.ok()) << job.error().message;
   const PrinterProfile& printer = job->request.printers[0].printer;
@@ -55,6 +55,7 @@ TEST(ReadJob, WhatThePrinterPrintsWithoutSupportArrives) {
   EXPECT_EQ(printer.printable_length->source(), "an assumption");
   EXPECT_EQ(printer.drain_holes->diameter_mm, 20);
   EXPECT_EQ(printer.drain_holes->least_count, 2);
+  EXPECT_EQ(printer.drain_holes->least_diameter_mm, 3.5);
   EXPECT_EQ(printer.build_direction, BuildDirection::kHanging);
   EXPECT_EQ(printer.neck_diameter_mm, 0.8);
 

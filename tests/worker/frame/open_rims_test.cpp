@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "worker/frame/open_rims.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/worker/drain/hollow.h"
+#include "worker/frame/sample_frame.h"
+
+namespace skinframe {
+namespace {
+
+SampledFrame sampled_with(const hollow::Body& body, const std::vector<Opening>& openings) {
+  FrameOptions options;
+  options.plate.tensile_modulus_mpa = 1586;
+  options.openings = openings;
+  RunContext context;
+  auto sampled = sample_frame(body.skin, options, context);
+  EXPECT_TRUE(sampled.ok()) << sampled.error().message;
+  return std::move(sampled.value());
+}
+
+TEST(OpenRims, TheTriangulationEndsAtTheRimAndNoStrutIsInTheOpening) {
+  const hollow::Body box = hollow::make(bodies::box(70, 60, 50));
+  const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
+  const std::vector<Opening> openings{{{20, 20, 0}, down, 8, 1, 2}, {{50, 40, 0}, down, 8, 1, 2}};
+  const SampledFrame sampled = sampled_with(box, openings);
+  EXPECT_THAT(sampled.warnings, testing::IsEmpty());
+  EXPECT_EQ(sampled.openings.size(), 2u);
+  std::map<std::pair<int, int>, int> sides;
+  for (const auto& t : sampled.frame.skin_triangles)
+    for (int k = 0; k < 3; ++k) ++sides[{t[k], t[(k + 1) % 3]}];
+  int open = 0;
+  for (const auto& [side, uses] : sides) {
+    EXPECT_EQ(uses, 1);
+    if (sides.count({side.second, side.first}) > 0) continue;
+    ++open;
+    for (const int node : {side.first, side.second}) {
+      const Eigen::Vector3d& p = sampled.frame.nodes_mm[node];
+      EXPECT_NEAR(p.z(), 1.0, 0.1);
+      EXPECT_NEAR(std::min((p - Eigen::Vector3d(20, 20, 1)).norm(), (p - Eigen::Vector3d(50, 40, 1)).norm()),
+                  rim_radius_mm(openings[0], 1.0), 0.15);
+    }
+  }
+  EXPECT_EQ(open, 2 * kRimNodes);
+  for (const Strut& strut : sampled.frame.struts)
+    EXPECT_GE(distance_mm(openings, sampled.frame.nodes_mm[strut.a], sampled.frame.nodes_mm[strut.b]),
+              strut.is_skin ? 1.0 : 0.5);
+}
+
+TEST(OpenRims, AnOpeningThatHasNoRoomIsLeftOutWithAWord) {
+  const hollow::Body box = hollow::make(bodies::box(70, 60, 50));
+  // Two rims that run through each other.
+  const Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();
+  const SampledFrame sampled =
+      sampled_with(box, {{{30, 30, 0}, down, 8, 1, 2}, {{36, 30, 0}, down, 8, 1, 2}});
+  EXPECT_LT(sampled.openings.size(), 2u);
+  EXPECT_THAT(sampled.warnings, testing::Contains(testing::HasSubstr("drain hole")));
+}
+
+TEST(OpenRim, ChangesNothingWhereNoChainRunsAboutTheOpening) {
+  TriangleMesh box = bodies::box(70, 60, 50);
+  std::vector<std::pair<int, int>> chords;
+  EXPECT_FALSE(open_rim(box, chords, {{35, 30, 0}, -Eigen::Vector3d::UnitZ(), 8, 1, 2}, 1.0));
+  EXPECT_EQ(box.triangles.size(), bodies::box(70, 60, 50).triangles.size());
+}
+
+}  // namespace
+}  // namespace skinframe
