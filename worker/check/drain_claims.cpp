@@ -108,6 +108,22 @@ void claim_holes(const ExportedPrinter& result, const Surface& outer, const Surf
            wider)});
 }
 
+// Where a hole is told of that could not be cut, each line meets the skin.
+void claim_closed(const ExportedPrinter& result, Verdict* verdict) {
+  const ExportedDrain& drain = *result.drain;
+  if (drain.uncut.empty()) return;
+  int open = 0;
+  for (const ExportedHole& hole : drain.uncut) {
+    const double radius = 0.5 * hole.diameter_mm;
+    std::vector<Line> within = lines_through(hole, {0, 0.5 * radius, radius - result.voxel_mm});
+    find_crossed(*result.merged, within);
+    for (const Line& line : within) open += !finds_skin(line, result.skin_thickness_mm - result.voxel_mm);
+  }
+  verdict->claims.push_back(
+      {"drain holes that are reported as not cut are closed", open == 0,
+       fmt::format("{} lines through {} of them do not find the skin", open, drain.uncut.size())});
+}
+
 void claim_free_of_struts(const ExportedPrinter& result, Verdict* verdict) {
   const ExportedDrain& drain = *result.drain;
   int within = 0;
@@ -226,6 +242,7 @@ void claim_drain(const ExportedPrinter& result, const TriangleMesh& outer_mesh, 
     for (auto& t : outward.triangles) std::swap(t[1], t[2]);
     const Surface hollow(outward);
     claim_holes(result, outer, hollow, verdict);
+    claim_closed(result, verdict);
   }
   claim_free_of_struts(result, verdict);
   claim_reachable(result, verdict);

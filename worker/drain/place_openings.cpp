@@ -68,8 +68,14 @@ struct Candidate {
 class Placing {
  public:
   Placing(const TriangleMesh& mesh, const Skin& skin, const Polygon2& hull, const StressMap* stress,
-          const std::vector<TriangleMesh>& cavities, const std::vector<KeepAway>& keep_away)
-      : mesh_(mesh), skin_(skin), hull_(hull), keep_away_(keep_away), sites_(spread_sites(mesh)) {
+          const std::vector<TriangleMesh>& cavities, const std::vector<KeepAway>& keep_away,
+          const std::vector<Opening>& refused)
+      : mesh_(mesh),
+        skin_(skin),
+        hull_(hull),
+        keep_away_(keep_away),
+        refused_(refused),
+        sites_(spread_sites(mesh)) {
     stress_rank_.assign(sites_.size(), 0.0);
     if (stress != nullptr) rank_stress(*stress);
     for (const TriangleMesh& shell : cavities) {
@@ -163,6 +169,10 @@ class Placing {
   std::optional<Candidate> judge(const Site& site, double radius) const {
     for (const KeepAway& away : keep_away_)
       if ((site.at - away.point_mm).norm() < away.radius_mm + radius) return std::nullopt;
+    for (const Opening& other : refused_)
+      if (radius > 0.99 * other.radius_mm &&
+          (site.at - other.centre_mm).norm() < kRefusedInRadii * other.radius_mm)
+        return std::nullopt;
     const auto axis = axis_at(site, radius);
     if (!axis) return std::nullopt;
     const double thickness = skin_.thickness_mm;
@@ -263,6 +273,7 @@ class Placing {
   const Skin& skin_;
   const Polygon2& hull_;
   const std::vector<KeepAway>& keep_away_;
+  const std::vector<Opening>& refused_;
   std::vector<Site> sites_;
   std::vector<double> stress_rank_;  // 0 .. 1, one a site
   std::vector<Cavity> cavities_;     // the largest first
@@ -273,9 +284,10 @@ class Placing {
 PlacedOpenings place_openings(const TriangleMesh& mesh, const Skin& skin, const Polygon2& contact_hull,
                               const StressMap* stress, const OpeningRule& rule,
                               const std::vector<TriangleMesh>& cavities,
-                              const std::vector<KeepAway>& keep_away, const RunContext& context) {
+                              const std::vector<KeepAway>& keep_away, const std::vector<Opening>& refused,
+                              const RunContext& context) {
   SKINFRAME_CHECK(rule.diameter_mm > 0.0 && rule.least_diameter_mm > 0.0);
-  return Placing(mesh, skin, contact_hull, stress, cavities, keep_away).place(rule, context);
+  return Placing(mesh, skin, contact_hull, stress, cavities, keep_away, refused).place(rule, context);
 }
 
 }  // namespace skinframe

@@ -37,14 +37,17 @@ struct PlacedOpenings {
   std::vector<std::string> warnings;  // a cavity with fewer holes than the rule asks for, and what would help
 };
 
+inline constexpr double kRefusedInRadii = 0.4;
 inline constexpr double kFlatCost = 1.0, kStressCost = 0.5, kNearCost = 1.0;
 inline constexpr double kSteepestDegrees = 35.0;  // normals of M against the axis, over the rim and beyond
 
 // closed_mesh: M, which the skin was built from; cavities: the closed pieces of M1. Holes in the base contact
-// stay within its hull. No stress: not asked for. The same at any thread count.
+// stay within its hull. No stress: not asked for. refused: openings that could not be made; none as wide or
+// wider is placed within kRefusedInRadii of their radius. The same at any thread count.
 PlacedOpenings place_openings(const TriangleMesh& closed_mesh, const Skin& skin, const Polygon2& contact_hull,
                               const StressMap* stress, const OpeningRule& rule,
                               const std::vector<TriangleMesh>& cavities,
-                              const std::vector<KeepAway>& keep_away, const RunContext& context);
+                              const std::vector<KeepAway>& keep_away, const std::vector<Opening>& refused,
+                              const RunContext& context);
 
 }  // namespace skinframe

@@ -87,34 +87,6 @@ Status FrameOptions::validate() const {
   return ok_status();
 }
 
-namespace {
-
-Result<SampledFrame> sample_without(const std::vector<std::size_t>& unopened, const Skin& skin,
-                                    const FrameOptions& options, RunContext& context) {
-  FrameOptions fewer = options;
-  fewer.openings.clear();
-  std::vector<std::string> warnings;
-  for (std::size_t k = 0; k < options.openings.size(); ++k) {
-    if (std::find(unopened.begin(), unopened.end(), k) == unopened.end()) {
-      fewer.openings.push_back(options.openings[k]);
-      continue;
-    }
-    const Eigen::Vector3d& at = options.openings[k].centre_mm;
-    warnings.push_back(
-        fmt::format("a drain hole at ({:.1f}, {:.1f}, {:.1f}) mm is left out: the skin's nodes cannot follow "
-                    "its rim; more --skin-nodes or a smaller hole in the printer's profile may help",
-                    at.x(), at.y(), at.z()));
-  }
-  auto sampled = sample_frame(skin, fewer, context);
-  if (sampled) {
-    auto& all = sampled.value().warnings;
-    all.insert(all.end(), warnings.begin(), warnings.end());
-  }
-  return sampled;
-}
-
-}  // namespace
-
 Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options, RunContext& context) {
   if (auto status = options.validate(); !status) return status.error();
   if (skin.inner_surface.triangles.empty()) {
@@ -134,7 +106,11 @@ Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options,
   const double contact_height = skin.plate_z_mm + skin.thickness_mm + options.contact_tolerance_mm;
   auto sample = sample_skin(pieces, skin, options, *total, contact_height, sampled.warnings, context);
   if (!sample) return sample.error();
-  if (!sample->unopened.empty()) return sample_without(sample->unopened, skin, options, context);
+  if (!sample->unopened.empty()) {
+    SampledFrame none;
+    for (const std::size_t k : sample->unopened) none.unopened.push_back(options.openings[k]);
+    return none;
+  }
   sampled.openings = options.openings;
   sampled.frame = std::move(sample.value().frame);
   sampled.sharp_chords = std::move(sample.value().sharp_chords);

@@ -73,7 +73,10 @@ struct SampledFrame {
   int struts_left_out_crossing = 0;     // internal ones, nearer to others than their least radii allow
   TriangleAngles angles;
   int pieces = 0;                 // of M1 that have a frame
-  std::vector<Opening> openings;  // of the options, but for those whose rim the triangulation cannot follow
+  std::vector<Opening> openings;  // of the options
+  // Those of the options whose rim the triangulation cannot follow. Where there are such, this is all that is
+  // filled: it is to be done again with others.
+  std::vector<Opening> unopened;
   std::vector<std::string> warnings;
 };
 

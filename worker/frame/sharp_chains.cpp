@@ -20,6 +20,7 @@ constexpr double kSameCornerInReaches = 0.7;
 constexpr double kApartInReaches = 2.5;
 constexpr double kLeastLengthInReaches = 16.0;  // facets of coarse round bodies have shorter ones
 constexpr int kArcsOfALoop = 3;
+constexpr double kApartInShares = 0.1;  // of even spacing, between vertices along a curve
 
 std::vector<std::vector<Eigen::Vector3d>> arcs_of(const SharpCurve& curve) {
   if (!curve.closed) return {curve.points_mm};
@@ -166,15 +167,20 @@ void SharpChains::add(TriangleMesh& piece, const Chain& chain, const std::vector
     corners_mm_[end] = end == path.front() ? chain.points_mm.front() : chain.points_mm.back();
     piece.vertices[end] = corners_mm_[end];
   }
-  double before = 0.0;
-  for (std::size_t i = 1; i + 1 < path.size(); ++i) {
+  // Never back, for paths may turn a little where the surface is bevelled, and never two in one place: an
+  // edge without length is collapsed before anything is asked.
+  const std::size_t inner = path.size() - 2;
+  const double apart = kApartInShares * chain.length() / static_cast<double>(inner + 1);
+  std::vector<double> along(path.size(), 0.0);
+  along.back() = chain.length();
+  for (std::size_t i = 1; i <= inner; ++i)
+    along[i] = std::max(along[i - 1] + apart, chain.nearest(piece.vertices[path[i]]));
+  for (std::size_t i = inner; i >= 1; --i) along[i] = std::min(along[i], along[i + 1] - apart);
+  for (std::size_t i = 1; i <= inner; ++i) {
     const int v = path[i];
     roles_[v] = Role::kInner;
-    // Never back: paths may turn a little where the surface is bevelled.
-    const double along = std::max(before, chain.nearest(piece.vertices[v]));
-    links_[v] = {number, path[i - 1], path[i + 1], along};
-    piece.vertices[v] = chain.at(along);
-    before = along;
+    links_[v] = {number, path[i - 1], path[i + 1], along[i]};
+    piece.vertices[v] = chain.at(along[i]);
   }
   chains_.push_back(chain);
   chains_.back().inner = static_cast<int>(path.size()) - 2;

@@ -26,11 +26,16 @@ namespace {
 
 std::vector<std::string> honest_warnings(const PrinterProfile& printer) {
   switch (printer.process) {
-    case PrintProcess::kExtrusion:
-      if (printer.printable_length) return {};
-      return {
-          "the printer's profile says nothing about the length that prints without support, so no support "
-          "struts are made: struts that overhang need the slicer's own supports"};
+    case PrintProcess::kExtrusion: {
+      std::vector<std::string> warnings;
+      if (printer.drain_holes)
+        warnings.push_back("the profile's drain holes are not made: there is nothing to drain in extrusion");
+      if (!printer.printable_length)
+        warnings.push_back(
+            "the printer's profile says nothing about the length that prints without support, so no support "
+            "struts are made: struts that overhang need the slicer's own supports");
+      return warnings;
+    }
     case PrintProcess::kPowder:
     case PrintProcess::kResin:
       if (printer.drain_holes) return {};
@@ -43,9 +48,9 @@ std::vector<std::string> honest_warnings(const PrinterProfile& printer) {
 
 // Frames with other holes do not serve.
 std::string rule_key(const PrinterProfile& printer) {
-  if (!printer.drain_holes) return {};
-  const DrainHoleRule& rule = *printer.drain_holes;
-  return fmt::format("-{}-{}-{}", rule.diameter_mm, rule.least_count, rule.least_diameter_mm);
+  const auto rule = printer.holes_to_make();
+  if (!rule) return {};
+  return fmt::format("-{}-{}-{}", rule->diameter_mm, rule->least_count, rule->least_diameter_mm);
 }
 
 PrinterReport begin_report(const PrinterRequest& request) {

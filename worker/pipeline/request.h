@@ -38,11 +38,15 @@ struct PrinterProfile {
   Eigen::Vector3d tray_mm = Eigen::Vector3d::Zero();
   double max_internal_radius_mm = 5;                // upper bound of (10)
   std::optional<PrintableLength> printable_length;  // p(theta) of 4.5; none: no limit
-  std::optional<DrainHoleRule> drain_holes;         // none: no holes are made
+  std::optional<DrainHoleRule> drain_holes;         // as the profile says; see holes_to_make()
   BuildDirection build_direction = BuildDirection::kUp;
   std::optional<double> neck_diameter_mm;  // of an external support strut at the skin, where it is broken off
 
   double skin_thickness_mm() const { return 2 * min_radius_mm; }  // h_S
+  // None where nothing is to be drained: in extrusion, whose support struts may stand anywhere on the skin.
+  std::optional<DrainHoleRule> holes_to_make() const {
+    return process == PrintProcess::kExtrusion ? std::nullopt : drain_holes;
+  }
 };
 
 struct PrinterRequest {

@@ -13,15 +13,53 @@ namespace {
 // Below this share of the solid the map says too little about it to go without a word.
 constexpr double kLeastCovered = 0.8;
 
+// As often holes are placed anew because nodes could not follow a rim.
+constexpr int kMostPlacings = 6;
+
 PlacedOpenings place_holes(const PreparedSolid& prepared, const Skin& skin, const StressMap* stress,
                            const DrainHoleRule& asked, const std::vector<Load>& loads,
-                           const RunContext& context) {
+                           const std::vector<Opening>& refused, const RunContext& context) {
   const OpeningRule rule{asked.diameter_mm, asked.least_diameter_mm, asked.least_count};
   std::vector<KeepAway> keep_away;
   for (const StressLoad& load : loads_at_points(loads, prepared.solid))
     keep_away.push_back({load.point_mm, load.radius_mm});
   return place_openings(prepared.solid.mesh(), skin, prepared.contact.hull, stress, rule,
-                        split_pieces(skin.inner_surface), keep_away, context);
+                        split_pieces(skin.inner_surface), keep_away, refused, context);
+}
+
+// Where nodes cannot follow a rim, holes are placed anew, elsewhere or smaller; after kMostPlacings those are
+// left out.
+Result<SampledFrame> sample_with_holes(const PreparedSolid& prepared, const Skin& skin, FrameOptions options,
+                                       const DrainHoleRule& asked, const std::vector<Load>& loads, Laps& laps,
+                                       PrinterReport* report, RunContext& context) {
+  std::vector<Opening> refused;
+  PlacedOpenings placed = place_holes(prepared, skin, options.stress, asked, loads, refused, context);
+  for (int placings = 1;; ++placings) {
+    if (context.cancelled()) return cancelled_error();
+    laps.lap("drain");
+    options.openings = placed.openings;
+    auto sampled = sample_frame(skin, options, context);
+    laps.lap("sample");
+    if (sampled && !sampled->unopened.empty()) {
+      refused.insert(refused.end(), sampled->unopened.begin(), sampled->unopened.end());
+      if (placings < kMostPlacings) {
+        placed = place_holes(prepared, skin, options.stress, asked, loads, refused, context);
+        continue;
+      }
+      for (const Opening& opening : sampled->unopened) {
+        std::erase_if(placed.openings,
+                      [&](const Opening& other) { return other.centre_mm == opening.centre_mm; });
+        placed.warnings.push_back(
+            fmt::format("a drain hole at ({:.1f}, {:.1f}, {:.1f}) mm is left out: the skin's nodes cannot "
+                        "follow its rim; "
+                        "more --skin-nodes or a smaller hole in the printer's profile may help",
+                        opening.centre_mm.x(), opening.centre_mm.y(), opening.centre_mm.z()));
+      }
+      continue;
+    }
+    report->warnings.insert(report->warnings.end(), placed.warnings.begin(), placed.warnings.end());
+    return sampled;
+  }
 }
 
 }  // namespace
@@ -76,15 +114,9 @@ Result<SampledFrame> sample_by_stress(const PreparedSolid& prepared, const Skin&
   context.report({.stage = Stage::kSample});
   FrameOptions options = frame_options(request, job);
   options.stress = stress ? &*stress : nullptr;
-  if (request.printer.drain_holes) {
-    auto placed =
-        place_holes(prepared, skin, options.stress, *request.printer.drain_holes, job.loads, context);
-    if (context.cancelled()) return cancelled_error();
-    options.openings = std::move(placed.openings);
-    report->warnings.insert(report->warnings.end(), placed.warnings.begin(), placed.warnings.end());
-    laps.lap("drain");
-  }
-  auto sampled = sample_frame(skin, options, context);
+  const auto holes = request.printer.holes_to_make();
+  auto sampled = holes ? sample_with_holes(prepared, skin, options, *holes, job.loads, laps, report, context)
+                       : sample_frame(skin, options, context);
   if (!sampled) return sampled.error();
   report->warnings.insert(report->warnings.end(), sampled->warnings.begin(), sampled->warnings.end());
   report->sampling = sampling_facts(*sampled, stress ? "stress+curvature" : "curvature");

@@ -129,9 +129,9 @@ Status write_printable(const MergedPrint& print, const PreparedSolid& prepared, 
       return written;
     report->files.push_back("frame-beams.3mf");
   }
-  if (printer.printer.drain_holes && !report->is_solid) {
-    if (auto written = write_holes(print, prepared, *printer.printer.drain_holes, folder, report); !written)
-      return written;
+  const auto rule = printer.printer.holes_to_make();
+  if (rule && !report->is_solid) {
+    if (auto written = write_holes(print, prepared, *rule, folder, report); !written) return written;
   }
   return write_compact(print, prepared, folder, report, context);
 }

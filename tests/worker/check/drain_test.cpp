@@ -122,6 +122,26 @@ TEST_F(DrainCheck, AHoleThatIsNotToldOfIsSeen) {
               says_no_to("skin triangulation"));
 }
 
+TEST_F(DrainCheck, AHoleThatIsOpenButReportedAsNotCutIsSeen) {
+  EXPECT_THAT(denied([](ExportedPrinter& told) {
+                told.drain->uncut.push_back(told.drain->holes.back());
+                told.drain->holes.pop_back();
+              }),
+              says_no_to("drain holes that are reported as not cut"));
+}
+
+TEST_F(DrainCheck, AHoleThatCouldNotBeCutIsClosed) {
+  // Beside the first hole, where the skin is whole, stands one that is told of as not cut.
+  EXPECT_THAT(denied([](ExportedPrinter& told) {
+                ExportedHole beside = told.drain->holes[0];
+                const double apart = beside.diameter_mm;
+                beside.centre_mm += apart * beside.axis.unitOrthogonal();
+                beside.diameter_mm = 2.0;
+                told.drain->uncut.push_back(beside);
+              }),
+              testing::Not(says_no_to("drain holes that are reported as not cut")));
+}
+
 TEST_F(DrainCheck, AStrutInTheHoleIsSeen) {
   EXPECT_THAT(denied([](ExportedPrinter& told) { told.drain->holes[0].diameter_mm *= 2.0; }),
               says_no_to("no strut stands in a drain hole"));

@@ -11,10 +11,11 @@ namespace skinframe {
 namespace {
 
 PlacedOpenings placed_on(const hollow::Body& body, const OpeningRule& rule,
-                         const std::vector<KeepAway>& keep_away = {}) {
+                         const std::vector<KeepAway>& keep_away = {},
+                         const std::vector<Opening>& refused = {}) {
   RunContext context;
   return place_openings(body.mesh, body.skin, contact_hull(body.mesh), nullptr, rule,
-                        split_pieces(body.skin.inner_surface), keep_away, context);
+                        split_pieces(body.skin.inner_surface), keep_away, refused, context);
 }
 
 TEST(PlaceOpenings, ABoxHasTwoBelowFarApartAndWithinItsBase) {
@@ -73,6 +74,30 @@ TEST(PlaceOpenings, TakesASmallerHoleWhereTheRuleAllowsIt) {
     EXPECT_LT(opening.radius_mm, 10);
     EXPECT_GE(opening.radius_mm, 2.5);
   }
+}
+
+TEST(PlaceOpenings, WhatWasRefusedIsPlacedElsewhereOrSmaller) {
+  const hollow::Body box = hollow::make(bodies::box(90, 70, 60));
+  const auto first = placed_on(box, {20, 20, 2}).openings;
+  ASSERT_EQ(first.size(), 2u);
+  const PlacedOpenings again = placed_on(box, {20, 20, 2}, {}, first);
+  ASSERT_EQ(again.openings.size(), 2u);
+  for (const Opening& opening : again.openings)
+    for (const Opening& other : first)
+      EXPECT_GE((opening.centre_mm - other.centre_mm).norm(), kRefusedInRadii * other.radius_mm);
+
+  // A rule of one size, refused in all places.
+  const hollow::Body cube = hollow::make(bodies::box(24, 24, 24));
+  std::vector<Opening> all;
+  for (int tries = 0; tries < 200; ++tries) {
+    const auto more = placed_on(cube, {6, 6, 1}, {}, all).openings;
+    if (more.empty()) break;
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  ASSERT_THAT(placed_on(cube, {6, 6, 1}, {}, all).openings, testing::IsEmpty());
+  const auto smaller = placed_on(cube, {6, 4, 1}, {}, all).openings;
+  ASSERT_EQ(smaller.size(), 1u);
+  EXPECT_LT(smaller[0].radius_mm, 3.0);
 }
 
 TEST(PlaceOpenings, EveryCavityHasOneOfItsOwn) {
