@@ -40,13 +40,34 @@ SparseMatrix assemble(const Structure& s) {
   return k;
 }
 
+template <std::size_t N, class Matrix>
+void add_forces(const std::vector<Vector3d>& at_mm, const std::array<int, N>& nodes, const Matrix& k,
+                const NodalColumns& d, NodalColumns* forces) {
+  Eigen::Matrix<double, 6 * N, Eigen::Dynamic> own(6 * N, d.cols());
+  Vector3d middle = Vector3d::Zero();
+  for (const int v : nodes) middle += at_mm[v] / N;
+  for (std::size_t i = 0; i < N; ++i)
+    own.template middleRows<6>(6 * i) = d.template middleRows<6>(6 * nodes[i]);
+  for (Eigen::Index c = 0; c < d.cols(); ++c) {
+    Eigen::Matrix<double, 6, 1> mean = Eigen::Matrix<double, 6, 1>::Zero();
+    for (std::size_t i = 0; i < N; ++i) mean += own.col(c).template segment<6>(6 * i) / N;
+    const Vector3d turn = mean.template tail<3>();
+    for (std::size_t i = 0; i < N; ++i) {
+      own.col(c).template segment<3>(6 * i) -= mean.template head<3>() + turn.cross(at_mm[nodes[i]] - middle);
+      own.col(c).template segment<3>(6 * i + 3) -= turn;
+    }
+  }
+  const Eigen::Matrix<double, 6 * N, Eigen::Dynamic> f = k * own;
+  for (std::size_t i = 0; i < N; ++i)
+    forces->template middleRows<6>(6 * nodes[i]) += f.template middleRows<6>(6 * i);
+}
+
 }  // namespace
 
 struct StructureSolver::Impl {
   explicit Impl(const Structure& s) : structure(s) {}
 
   const Structure& structure;
-  SparseMatrix whole;         // lower half
   SparseMatrix held_removed;  // lower half, free freedoms only
   std::vector<int> place;     // of a freedom among the free ones, -1
   int free = 0;
@@ -64,7 +85,7 @@ struct StructureSolver::Impl {
       if (joined[i / 6] && !structure.held[i / 6][i % 6]) place[i] = free++;
   }
 
-  void remove_held() {
+  void remove_held(const SparseMatrix& whole) {
     Triplets entries;
     entries.reserve(whole.nonZeros());
     for (int c = 0; c < whole.outerSize(); ++c)
@@ -75,8 +96,17 @@ struct StructureSolver::Impl {
     held_removed.setFromTriplets(entries.begin(), entries.end());
   }
 
+  // K D - F, element by element, each without its rigid motion: the entries of a stiff sliver are so large
+  // that they would lose in rounding what moving with its neighbours costs it, which is nothing.
   NodalColumns out_of_balance(const NodalColumns& d, const NodalColumns& f) const {
-    return whole.selfadjointView<Eigen::Lower>() * d - f;
+    NodalColumns rest = -f;
+    for (std::size_t i = 0; i < structure.shells.size(); ++i)
+      add_forces(structure.nodes_mm, structure.shells[i].nodes,
+                 shell_stiffness(structure.shell(i), structure.material), d, &rest);
+    for (std::size_t j = 0; j < structure.struts.size(); ++j)
+      add_forces(structure.nodes_mm, structure.struts[j].nodes,
+                 rigid_strut_stiffness(structure.strut(j), structure.material), d, &rest);
+    return rest;
   }
 };
 
@@ -90,9 +120,8 @@ Result<StructureSolver> StructureSolver::factorise(const Structure& structure, c
                                      kMaxStructureNodes));
   if (auto status = validate(structure); !status) return status.error();
   auto impl = std::make_unique<Impl>(structure);
-  impl->whole = assemble(structure);
   impl->number_freedoms();
-  impl->remove_held();
+  impl->remove_held(assemble(structure));
   if (context.cancelled()) return cancelled_error();
   if (impl->free > 0) {
     impl->factor.cholmod().print = 0;
@@ -111,7 +140,7 @@ Result<StructureSolver> StructureSolver::factorise(const Structure& structure, c
 const Structure& StructureSolver::structure() const { return impl_->structure; }
 
 NodalColumns StructureSolver::solve(const NodalColumns& loads_n) const {
-  SKINFRAME_CHECK(loads_n.rows() == impl_->whole.rows());
+  SKINFRAME_CHECK(loads_n.rows() == static_cast<Eigen::Index>(impl_->place.size()));
   NodalColumns right(impl_->free, loads_n.cols());
   for (Eigen::Index i = 0; i < loads_n.rows(); ++i)
     if (impl_->place[i] >= 0) right.row(impl_->place[i]) = loads_n.row(i);
@@ -121,6 +150,10 @@ NodalColumns StructureSolver::solve(const NodalColumns& loads_n) const {
   for (Eigen::Index i = 0; i < loads_n.rows(); ++i)
     if (impl_->place[i] >= 0) d.row(i) = solved.row(impl_->place[i]);
   return d;
+}
+
+void StructureSolver::refine(const NodalColumns& loads_n, NodalColumns* displacements) const {
+  *displacements -= solve(impl_->out_of_balance(*displacements, loads_n));
 }
 
 NodalColumns StructureSolver::reactions_n(const NodalColumns& d, const NodalColumns& f) const {
@@ -168,7 +201,7 @@ Balance StructureSolver::balance(const NodalColumns& d, const NodalColumns& f) c
 }
 
 int StructureSolver::free_count() const { return impl_->free; }
-VectorXd StructureSolver::solve_free(const VectorXd& x) const { return impl_->factor.solve(x); }
+Eigen::MatrixXd StructureSolver::solve_free(const Eigen::MatrixXd& x) const { return impl_->factor.solve(x); }
 VectorXd StructureSolver::multiply_free(const VectorXd& x) const {
   return impl_->held_removed.selfadjointView<Eigen::Lower>() * x;
 }

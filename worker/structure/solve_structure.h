@@ -32,6 +32,9 @@ class StructureSolver {
 
   // Displacements and rotations of all nodes; held ones are zero, and forces on them go into the support.
   NodalColumns solve(const NodalColumns& loads_n) const;
+  // One step of iterative refinement, D <- D + K^-1 (F - K D): where stiff slivers beside soft parts cost
+  // digits.
+  void refine(const NodalColumns& loads_n, NodalColumns* displacements) const;
   // What the supports do to the structure: K D - F at held freedoms, zero elsewhere.
   NodalColumns reactions_n(const NodalColumns& displacements, const NodalColumns& loads_n) const;
   // |K D - F| over |F| at free freedoms, largest entries.
@@ -41,7 +44,7 @@ class StructureSolver {
 
   // For eigenvalue problems on the free freedoms: x <- K^-1 x and x <- K x, and the way there and back.
   int free_count() const;
-  Eigen::VectorXd solve_free(const Eigen::VectorXd& x) const;
+  Eigen::MatrixXd solve_free(const Eigen::MatrixXd& x) const;
   Eigen::VectorXd multiply_free(const Eigen::VectorXd& x) const;
   int free_index(int node, int freedom) const;  // -1: held, or joined to nothing
 

@@ -16,6 +16,10 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+constexpr int kMostRefinements = 3;
+
+double worse(const Balance& balance) { return std::max(balance.force, balance.moment); }
+
 NodalColumns load_columns(const Structure& s, const std::vector<LoadCase>& cases) {
   NodalColumns f(6 * static_cast<Eigen::Index>(s.nodes_mm.size()), static_cast<Eigen::Index>(cases.size()));
   for (std::size_t c = 0; c < cases.size(); ++c) f.col(c) = load_column(s, cases[c]);
@@ -74,8 +78,8 @@ void check_euler(const Structure& s, const NodalColumns& displacements, Assessme
     whole.length_mm += rigid_strut_length_mm(strut);
     whole.inertia_mm4 = section_of(strut.shape, strut.radius_mm, s.material.poisson_ratio).i_in;
     for (Eigen::Index c = 0; c < displacements.cols(); ++c) {
-      const VectorXd d = displacements.col(c);
-      const double force = rigid_strut_stress(strut, s.material, freedoms_of(s.struts[j], d)).axial_force_n;
+      const StrutVector d = freedoms_of(s.struts[j], displacements.col(c));
+      const double force = rigid_strut_stress(strut, s.material, d).axial_force_n;
       whole.compression_n = std::max(whole.compression_n, -force);
     }
   }
@@ -105,29 +109,33 @@ PinchFigures measure_pinches(const Structure& s, const std::vector<PinchSite>& s
 
 }  // namespace
 
-Result<Assessment> assess(const Structure& s, const FineSkin& fine, const std::vector<LoadCase>& cases,
-                          const std::vector<PinchSite>& pinches, const RunContext& context) {
-  auto solver = StructureSolver::factorise(s, context);
-  if (!solver) return solver.error();
+Result<Assessment> assess(const StructureSolver& solver, const FineSkin& fine,
+                          const std::vector<LoadCase>& cases, const std::vector<PinchSite>& pinches,
+                          const RunContext& context) {
+  const Structure& s = solver.structure();
   const NodalColumns loads = load_columns(s, cases), pinch = pinch_columns(s, fine, pinches);
   NodalColumns all(loads.rows(), loads.cols() + pinch.cols());
   all.leftCols(loads.cols()) = loads;
   all.rightCols(pinch.cols()) = pinch;
-  const NodalColumns d = solver->solve(all);
+  NodalColumns d = solver.solve(all);
   Assessment out;
-  out.balance = solver->balance(d, all);
-  if (!(std::max(out.balance.force, out.balance.moment) <= kBalanceTolerance))
+  out.balance = solver.balance(d, all);
+  for (int step = 0; step < kMostRefinements && worse(out.balance) > kBalanceTolerance; ++step) {
+    solver.refine(all, &d);
+    out.balance = solver.balance(d, all);
+  }
+  if (!(worse(out.balance) <= kBalanceTolerance))
     return internal_error(
         fmt::format("reactions and loads do not balance: {:.1e} of the forces, {:.1e} of the moments",
                     out.balance.force, out.balance.moment));
   out.displacements = d.leftCols(loads.cols());
   out.figures.weight_g = structure_volume_mm3(s) * s.weight_density_n_mm3 / kGravityMmPerS2 * 1e6;
+  if (context.cancelled()) return cancelled_error();
+  const auto factors = buckling_factors(solver, out.displacements);
+  if (!factors) return factors.error();
   for (std::size_t c = 0; c < cases.size(); ++c) {
-    if (context.cancelled()) return cancelled_error();
     LoadFigures figures = measure(s, fine.frame.nodes_mm.size(), cases[c], d.col(c));
-    auto factor = buckling_factor(solver.value(), d.col(c));
-    if (!factor) return factor.error();
-    figures.buckling_factor = *factor;
+    figures.buckling_factor = (*factors)[c];
     out.figures.loads.push_back(std::move(figures));
   }
   if (!pinches.empty()) out.figures.pinch = measure_pinches(s, pinches, pinch, d.rightCols(pinch.cols()));
@@ -135,11 +143,15 @@ Result<Assessment> assess(const Structure& s, const FineSkin& fine, const std::v
   return out;
 }
 
-Result<std::vector<double>> load_works(const Structure& s, const std::vector<LoadCase>& cases,
-                                       const RunContext& context) {
-  auto solver = StructureSolver::factorise(s, context);
+Result<Assessment> assess(const Structure& s, const FineSkin& fine, const std::vector<LoadCase>& cases,
+                          const std::vector<PinchSite>& pinches, const RunContext& context) {
+  const auto solver = StructureSolver::factorise(s, context);
   if (!solver) return solver.error();
-  const NodalColumns f = load_columns(s, cases), d = solver->solve(f);
+  return assess(*solver, fine, cases, pinches, context);
+}
+
+std::vector<double> load_works(const StructureSolver& solver, const std::vector<LoadCase>& cases) {
+  const NodalColumns f = load_columns(solver.structure(), cases), d = solver.solve(f);
   std::vector<double> works;
   for (std::size_t c = 0; c < cases.size(); ++c) {
     const auto [work, size] = external_work(cases[c], d.col(c));

@@ -17,16 +17,18 @@ struct Assessment {
   int euler_strut = -1;
 };
 
-// load_cases: forces on the fine skin's nodes, which are the structure's first. Errors: those of
-// StructureSolver::factorise; kInternal where forces and reactions do not balance to kBalanceTolerance, or
-// the buckling factor does not converge.
+// load_cases: forces on the fine skin's nodes, which are the structure's first. Errors: kInternal where
+// forces and reactions do not balance to kBalanceTolerance, or the buckling factor does not converge; of the
+// second those of StructureSolver::factorise too.
+Result<Assessment> assess(const StructureSolver& solver, const FineSkin& fine,
+                          const std::vector<LoadCase>& load_cases, const std::vector<PinchSite>& pinches,
+                          const RunContext& context);
 Result<Assessment> assess(const Structure& structure, const FineSkin& fine,
                           const std::vector<LoadCase>& load_cases, const std::vector<PinchSite>& pinches,
                           const RunContext& context);
 
 // Work of the external forces of each load case, for the mesh's error estimate; of its weight where only that
 // acts.
-Result<std::vector<double>> load_works(const Structure& structure, const std::vector<LoadCase>& load_cases,
-                                       const RunContext& context);
+std::vector<double> load_works(const StructureSolver& solver, const std::vector<LoadCase>& load_cases);
 
 }  // namespace skinframe

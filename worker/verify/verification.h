@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -61,6 +62,9 @@ struct Verification {
   std::size_t nodes = 0, triangles = 0;
   double mesh_error = 0;  // relative change of the loads' work from the mesh one level coarser: an estimate
   std::string verdict;    // who wins, in words
+  // Of the thread, by stage: mesh (its divisions, each assembled and factorised), pinch sites, skin-frame,
+  // skin alone, hollow, solid.
+  std::map<std::string, double> cpu_seconds;
   std::vector<Eigen::Vector3d> skin_mm;  // mid-surface
   std::vector<std::array<int, 3>> skin_triangles;
   std::vector<Deformation> deformations;

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/verify/verify.h"
 
+#include <time.h>
+
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 
 #include "worker/run/one_blas_thread.h"
 #include "worker/skin/triangle_tree.h"
@@ -17,18 +21,43 @@ namespace {
 struct FineModel {
   FineSkin skin;
   std::vector<LoadCase> cases;
-  Structure structure;  // of the skin-frame
+  std::unique_ptr<const Structure> structure;  // of the skin-frame
+  std::optional<StructureSolver> solver;       // refers to it
 };
 
-Result<FineModel> model_at(const VerifyInput& in, int levels) {
+Result<FineModel> model_at(const VerifyInput& in, int levels, const RunContext& context) {
   FineModel model;
   model.skin = refine_skin(in.problem.frame, in.skin, levels);
   auto cases = in.place_loads(model.skin.frame);
   if (!cases) return cases.error();
   model.cases = std::move(cases).value();
-  model.structure = skin_frame_structure(in.problem, in.radii_mm, in.skin, model.skin);
+  model.structure =
+      std::make_unique<const Structure>(skin_frame_structure(in.problem, in.radii_mm, in.skin, model.skin));
+  auto solver = StructureSolver::factorise(*model.structure, context);
+  if (!solver) return solver.error();
+  model.solver.emplace(std::move(solver).value());
   return model;
 }
+
+// CPU seconds of this thread since the last lap.
+class CpuLaps {
+ public:
+  explicit CpuLaps(std::map<std::string, double>* seconds) : seconds_(seconds), last_(now()) {}
+  void lap(const std::string& stage) {
+    const double at = now();
+    (*seconds_)[stage] += at - last_;
+    last_ = at;
+  }
+
+ private:
+  static double now() {
+    timespec time{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+  }
+  std::map<std::string, double>* seconds_;
+  double last_;
+};
 
 double largest_change(const std::vector<double>& before, const std::vector<double>& after) {
   double worst = 0;
@@ -42,15 +71,14 @@ Result<FineModel> refine(const VerifyInput& in, Verification* out, const RunCont
   int level = fine_node_count(in.problem.frame, 2) <= kMostFineNodes ? 1 : 0;
   std::vector<double> before;
   for (;; ++level) {
-    auto model = model_at(in, level);
+    auto model = model_at(in, level, context);
     if (!model) return model.error();
-    auto works = load_works(model->structure, model->cases, context);
-    if (!works) return works.error();
+    std::vector<double> works = load_works(*model->solver, model->cases);
     out->levels = level;
     const bool last = fine_node_count(in.problem.frame, level + 1) > kMostFineNodes && level > 0;
-    if (!before.empty()) out->mesh_error = largest_change(before, *works);
+    if (!before.empty()) out->mesh_error = largest_change(before, works);
     if (!before.empty() && (last || out->mesh_error < kMeshTolerance)) return model;
-    before = std::move(works).value();
+    before = std::move(works);
   }
 }
 
@@ -72,11 +100,14 @@ void assess_hollow(const VerifyInput& in, const FineModel& model, const Triangle
 Result<Verification> verify(const VerifyInput& in, const RunContext& context) {
   use_one_blas_thread();
   Verification out;
+  CpuLaps laps(&out.cpu_seconds);
   auto model = refine(in, &out, context);
   if (!model) return model.error();
+  laps.lap("mesh");
   const TriangleTree body(in.body);
   const auto pinches = spread_pinches(model->skin, in.skin, body);
-  auto ours = assess(model->structure, model->skin, model->cases, pinches, context);
+  laps.lap("pinch sites");
+  auto ours = assess(*model->solver, model->skin, model->cases, pinches, context);
   if (!ours) return ours.error();
   const double density_g_mm3 = in.problem.material.density_g_cm3 * 1e-3;
   out.ours = ours->figures;
@@ -85,14 +116,14 @@ Result<Verification> verify(const VerifyInput& in, const RunContext& context) {
   out.euler_strut = ours->euler_strut;
   out.balance_force = ours->balance.force;
   out.balance_moment = ours->balance.moment;
-  out.nodes = model->structure.nodes_mm.size();
-  out.triangles = model->structure.shells.size();
+  out.nodes = model->structure->nodes_mm.size();
+  out.triangles = model->structure->shells.size();
   out.strength_mpa = in.problem.material.tensile_strength_mpa;
   if (out.strength_mpa && out.ours.max_stress_mpa() > 0)
     out.safety_factor = *out.strength_mpa / out.ours.max_stress_mpa();
 
   const std::size_t skin_nodes = model->skin.frame.nodes_mm.size();
-  out.skin_mm.assign(model->structure.nodes_mm.begin(), model->structure.nodes_mm.begin() + skin_nodes);
+  out.skin_mm.assign(model->structure->nodes_mm.begin(), model->structure->nodes_mm.begin() + skin_nodes);
   out.skin_triangles = model->skin.frame.skin_triangles;
   for (std::size_t c = 0; c < model->cases.size(); ++c) {
     Deformation deformation{model->cases[c].name, {}};
@@ -102,11 +133,14 @@ Result<Verification> verify(const VerifyInput& in, const RunContext& context) {
     out.deformations.push_back(std::move(deformation));
   }
 
+  laps.lap("skin-frame");
   auto alone = assess(skin_alone_structure(in.problem, in.skin, model->skin), model->skin, model->cases,
                       pinches, context);
   if (alone) out.skin_alone = std::move(alone->figures);
+  laps.lap("skin alone");
   if (context.cancelled()) return cancelled_error();
   assess_hollow(in, *model, body, pinches, &out, context);
+  laps.lap("hollow");
   if (out.hollow) out.hollow->weight_g = out.ours.weight_g;
   if (context.cancelled()) return cancelled_error();
   if (in.compare_solid) {
@@ -115,6 +149,7 @@ Result<Verification> verify(const VerifyInput& in, const RunContext& context) {
       out.solid = std::move(solid).value();
     else
       out.solid_missing = solid.error().message;
+    laps.lap("solid");
     if (context.cancelled()) return cancelled_error();
   }
   out.verdict = verdict_of(out);

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/structure/buckling.h"
 
+#include <Spectra/MatOp/DenseCholesky.h>
+#include <Spectra/MatOp/DenseSymMatProd.h>
+#include <Spectra/SymGEigsSolver.h>
 #include <gtest/gtest.h>
 
 #include "tests/worker/structure/grids.h"
@@ -54,6 +57,62 @@ TEST(Buckling, SupportedSquarePlateUnderEdgeCompression) {
   g.structure.held[g.node(0, 0)][1] = true;
   const double bending = 1000 / (12 * 0.91);
   EXPECT_NEAR(first_factor(g.structure, f) / (4 * pi * pi * bending / (side * side)), 1, 0.02);
+}
+
+// The same eigenproblem, assembled dense and without our iteration.
+double factor_by_spectra(const StructureSolver& solver, const Eigen::VectorXd& displacement) {
+  const Structure& s = solver.structure();
+  const int n = solver.free_count();
+  Eigen::MatrixXd stiffness(n, n), compression = Eigen::MatrixXd::Zero(n, n);
+  for (int i = 0; i < n; ++i) stiffness.col(i) = solver.multiply_free(Eigen::VectorXd::Unit(n, i));
+  const auto add = [&](const auto& nodes, const auto& k) {
+    for (int i = 0; i < k.rows(); ++i)
+      for (int j = 0; j < k.cols(); ++j) {
+        const int row = solver.free_index(nodes[i / 6], i % 6),
+                  column = solver.free_index(nodes[j / 6], j % 6);
+        if (row >= 0 && column >= 0) compression(row, column) -= k(i, j);
+      }
+  };
+  for (std::size_t i = 0; i < s.shells.size(); ++i) {
+    const auto stress = shell_stress(s.shell(i), s.material, freedoms_of(s.shells[i], displacement));
+    add(s.shells[i].nodes, shell_geometric_stiffness(s.shell(i), stress.membrane_mpa));
+  }
+  for (std::size_t j = 0; j < s.struts.size(); ++j) {
+    const auto stress = rigid_strut_stress(s.strut(j), s.material, freedoms_of(s.struts[j], displacement));
+    add(s.struts[j].nodes, rigid_strut_geometric_stiffness(s.strut(j), stress.axial_force_n));
+  }
+  Spectra::DenseSymMatProd<double> a(compression);
+  Spectra::DenseCholesky<double> b(stiffness);
+  Spectra::SymGEigsSolver<Spectra::DenseSymMatProd<double>, Spectra::DenseCholesky<double>,
+                          Spectra::GEigsMode::Cholesky>
+      eigen(a, b, 1, 24);
+  eigen.init();
+  eigen.compute(Spectra::SortRule::LargestAlge);
+  SKINFRAME_CHECK(eigen.info() == Spectra::CompInfo::Successful);
+  return 1 / eigen.eigenvalues()[0];
+}
+
+TEST(Buckling, CasesInStepAreWhatSpectraFindsForEachOfThem) {
+  auto g = test::plate_grid(40, 20, 6, 4, 1, {1586, 0.35});
+  Structure& s = g.structure;
+  StructureStrut strut;
+  strut.nodes = {g.node(6, 0), g.node(0, 4)};
+  strut.radius_mm = 1;
+  s.struts.push_back(strut);
+  for (int j = 0; j <= 4; ++j) s.held[g.node(0, j)] = kClamped;
+  NodalColumns f = NodalColumns::Zero(6 * s.nodes_mm.size(), 4);
+  f(6 * g.node(6, 2), 0) = -3;
+  f(6 * g.node(6, 2) + 1, 1) = 5;
+  f(6 * g.node(6, 4) + 1, 2) = -2;  // nothing acts in the last one
+  const StructureSolver solver = factorised(s);
+  const NodalColumns d = solver.solve(f);
+  const auto factors = buckling_factors(solver, d);
+  ASSERT_TRUE(factors.ok()) << factors.error().message;
+  for (int c = 0; c < 3; ++c) {
+    ASSERT_TRUE((*factors)[c].has_value());
+    EXPECT_NEAR(*(*factors)[c] / factor_by_spectra(solver, d.col(c)), 1, kBucklingTolerance);
+  }
+  EXPECT_FALSE((*factors)[3].has_value());
 }
 
 TEST(Buckling, WhatIsOnlyPulledHasNoFactor) {
