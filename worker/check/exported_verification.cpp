@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -26,6 +27,29 @@ Eigen::Vector3d floats_at(const std::string& bytes, std::size_t at) {
   float v[3];
   std::memcpy(v, bytes.data() + at, sizeof v);
   return {v[0], v[1], v[2]};
+}
+
+// The largest of a figure over a design's loads, or the least; none where no load has it.
+std::optional<double> extreme(const json& design, const char* figure, bool largest) {
+  std::optional<double> out;
+  if (design.is_null()) return out;
+  for (const json& load : design.at("loads"))
+    if (const auto x = number(load, figure))
+      out = !out ? *x : largest ? std::max(*out, *x) : std::min(*out, *x);
+  return out;
+}
+
+std::vector<ExportedRow> rows_of_designs(const json& designs) {
+  const json &ours = designs.at("skin_frame"), &hollow = designs.at("hollow");
+  const auto own = [](const json& design, const char* figure) {
+    return design.is_null() ? std::nullopt : number(design, figure);
+  };
+  return {{"max_displacement_mm", "", extreme(ours, "max_displacement_mm", true),
+           extreme(hollow, "max_displacement_mm", true)},
+          {"pinch_mean_mm", "", own(ours, "pinch_mean_mm"), own(hollow, "pinch_mean_mm")},
+          {"pinch_max_mm", "", own(ours, "pinch_max_mm"), own(hollow, "pinch_max_mm")},
+          {"buckling_factor", "", extreme(ours, "buckling_factor", false),
+           extreme(hollow, "buckling_factor", false)}};
 }
 
 }  // namespace
@@ -55,6 +79,7 @@ ExportedVerification parse_verification(const json& item) {
   for (const json& row : item.at("comparison").at("rows"))
     out.rows.push_back({row.at("figure").get<std::string>(), row.at("better").get<std::string>(),
                         number(row, "skin_frame"), number(row, "hollow")});
+  out.of_designs = rows_of_designs(item.at("comparison").at("designs"));
   out.verdict = item.at("comparison").at("verdict").get<std::string>();
   return out;
 }

@@ -38,6 +38,7 @@ struct ExportedVerification {
       hollow_thickness_mm, hollow_max_displacement_mm;
   std::vector<ExportedLoadFigures> loads;
   std::vector<ExportedRow> rows;
+  std::vector<ExportedRow> of_designs;  // the same rows from the designs' own figures; `better` is empty
   std::string verdict;
   std::vector<ExportedDeformation> deformations;
 };

@@ -93,7 +93,8 @@ void claim_figures(const ExportedVerification& v, Verdict* verdict) {
            std::max(v.balance_force, v.balance_moment))});
 }
 
-// Who is better, from the rows' own figures; a frame that wins no row must not be called better.
+// Who is better, from the rows' own figures, which are the worst of each design's loads; a frame that wins no
+// row must not be called better.
 void claim_comparison(const ExportedVerification& v, Verdict* verdict) {
   int ours = 0, hollow = 0, lies = 0;
   for (const ExportedRow& row : v.rows) {
@@ -113,6 +114,10 @@ void claim_comparison(const ExportedVerification& v, Verdict* verdict) {
   const bool agree = moved && pinched && same(moved->skin_frame, v.max_displacement_mm) &&
                      same(moved->hollow, v.hollow_max_displacement_mm) &&
                      same(pinched->skin_frame, v.pinch_max_mm);
+  for (const ExportedRow& row : v.of_designs) {
+    const ExportedRow* told = figure(row.figure.c_str());
+    lies += !told || !same(told->skin_frame, row.skin_frame) || !same(told->hollow, row.hollow);
+  }
   const bool boasts = v.verdict.starts_with("better than");
   verdict->claims.push_back({"comparison with a hollow (verified)",
                              lies == 0 && agree && boasts == (ours > 0),

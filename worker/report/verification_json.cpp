@@ -43,29 +43,52 @@ json weights_json(const Verification& v) {
           {"skin_alone", weight(v.skin_alone)}};
 }
 
+json design_json(const std::optional<DesignFigures>& design) {
+  if (!design) return nullptr;
+  json loads = json::array();
+  for (const LoadFigures& load : design->loads)
+    loads.push_back({{"name", load.name},
+                     {"max_displacement_mm", load.max_displacement_mm},
+                     {"load_displacement_mm", or_null(load.load_displacement_mm)},
+                     {"buckling_factor", or_null(load.buckling_factor)}});
+  const auto& pinch = design->pinch;
+  return {{"weight_g", design->weight_g},
+          {"loads", loads},
+          {"pinch_mean_mm", pinch ? json(pinch->mean_mm) : json(nullptr)},
+          {"pinch_max_mm", pinch ? json(pinch->max_mm) : json(nullptr)}};
+}
+
 }  // namespace
 
 json to_json(const Verification& v) {
   json loads = json::array();
   for (const LoadFigures& load : v.ours.loads) loads.push_back(load_json(load));
-  json out = {
-      {"label", "verified"},
-      {"model", "thin shell (OPT, DKT) and Timoshenko struts, rigid joints, nu 0.35, linear"},
-      {"max_displacement_mm", v.ours.max_displacement_mm()},
-      {"max_stress_mpa", v.ours.max_stress_mpa()},
-      {"strength_mpa", or_null(v.strength_mpa)},
-      {"safety_factor", or_null(v.safety_factor)},
-      {"buckling_factor", or_null(v.ours.buckling_factor())},
-      {"euler_factor", or_null(v.euler_factor)},
-      {"euler_strut", v.euler_strut},
-      {"loads", loads},
-      {"balance", {{"force", v.balance_force}, {"moment", v.balance_moment}}},
-      {"mesh",
-       {{"levels", v.levels},
-        {"nodes", v.nodes},
-        {"triangles", v.triangles},
-        {"error_estimate", v.mesh_error}}},
-      {"comparison", {{"rows", rows_json(v)}, {"weight_g", weights_json(v)}, {"verdict", v.verdict}}}};
+  json out = {{"label", "verified"},
+              {"model", "thin shell (OPT, DKT) and Timoshenko struts, rigid joints, nu 0.35, linear"},
+              {"max_displacement_mm", v.ours.max_displacement_mm()},
+              {"max_stress_mpa", v.ours.max_stress_mpa()},
+              {"strength_mpa", or_null(v.strength_mpa)},
+              {"safety_factor", or_null(v.safety_factor)},
+              {"buckling_factor", or_null(v.ours.buckling_factor())},
+              {"euler_factor", or_null(v.euler_factor)},
+              {"euler_strut", v.euler_strut},
+              {"loads", loads},
+              {"balance", {{"force", v.balance_force}, {"moment", v.balance_moment}}},
+              {"mesh",
+               {{"levels", v.levels},
+                {"nodes", v.nodes},
+                {"triangles", v.triangles},
+                {"error_estimate", v.mesh_error}}},
+              {"cpu_seconds", v.cpu_seconds},
+              {"comparison",
+               {{"rows", rows_json(v)},
+                {"weight_g", weights_json(v)},
+                {"designs",
+                 {{"skin_frame", design_json(v.ours)},
+                  {"hollow", design_json(v.hollow)},
+                  {"solid", design_json(v.solid)},
+                  {"skin_alone", design_json(v.skin_alone)}}},
+                {"verdict", v.verdict}}}};
   if (v.hollow) {
     out["hollow_max_displacement_mm"] = v.hollow->max_displacement_mm();
     out["hollow_thickness_mm"] = v.hollow_wall_mm;

@@ -289,6 +289,8 @@ TEST_F(CheckTest, AVerifiedDisplacementThatItsFileDoesNotHaveIsSeen) {
     for (json& load : v["loads"])
       load["max_displacement_mm"] = std::min(smaller, load["max_displacement_mm"].get<double>());
     v["comparison"]["rows"][0]["skin_frame"] = smaller;
+    for (json& load : v["comparison"]["designs"]["skin_frame"]["loads"])
+      load["max_displacement_mm"] = std::min(smaller, load["max_displacement_mm"].get<double>());
   };
   EXPECT_THAT(denied_report(lie), Names("displacement (verified)"));
 }
@@ -323,6 +325,14 @@ TEST_F(CheckTest, AComparisonThatNamesTheWrongWinnerIsSeen) {
   EXPECT_THAT(denied_report([](json& p) {
                 json& row = p["verification"]["comparison"]["rows"][1];
                 row["better"] = row["better"] == "hollow" ? "skin-frame" : "hollow";
+              }),
+              Names("comparison with a hollow (verified)"));
+}
+
+TEST_F(CheckTest, ARowThatIsNotTheWorstOfItsDesignsLoadsIsSeen) {
+  EXPECT_THAT(denied_report([](json& p) {
+                json& load = p["verification"]["comparison"]["designs"]["hollow"]["loads"].back();
+                load["max_displacement_mm"] = 1e3;
               }),
               Names("comparison with a hollow (verified)"));
 }
