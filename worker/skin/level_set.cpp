@@ -6,6 +6,11 @@
 #include <openvdb/tools/Interpolation.h>
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/VolumeToMesh.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
 
 namespace skinframe {
 namespace {
@@ -13,24 +18,54 @@ namespace {
 // A flat wall that runs through the grid's points leaves there the sign to rounding, and its surface becomes
 // a crumpled sheet of triangles back to back. A thousandth of a voxel deeper it does not.
 constexpr double kOffLatticeInVoxels = 1e-3;
-constexpr double kHiddenInVoxels = 1.5;  // below the surface, of a point of it
+constexpr double kHiddenInVoxels = 0.5;  // below the surface, of a point of it
 
-// Triangles that the grid does not see: OpenVDB takes surface for a fold within the material, and drops it,
-// where no point of the grid about it is outside. So it is with a void narrower than a voxel.
+using Corners = std::array<openvdb::Vec3d, 3>;
+
+// Whether it holds at one of points of the triangle that are about the spacing apart: rows along its longest
+// side, so that slivers have as many as they are long.
+template <class Holds>
+bool holds_somewhere(Corners corners, double spacing_mm, Holds holds) {
+  for (int turn = 0; turn < 2; ++turn) {
+    const auto& [a, b, c] = corners;
+    if ((b - a).lengthSqr() >= std::max((c - b).lengthSqr(), (a - c).lengthSqr())) break;
+    corners = {b, c, a};
+  }
+  const auto& [a, b, c] = corners;
+  const auto count = [&](double length_mm) { return std::max(1.0, std::ceil(length_mm / spacing_mm)); };
+  const double base = (b - a).length();
+  const double rows = base > 0.0 ? count((b - a).cross(c - a).length() / base) : 1.0;
+  for (double row = 0.5; row < rows; ++row) {
+    const openvdb::Vec3d from = a + (c - a) * (row / rows), to = b + (c - b) * (row / rows);
+    const double points = count((to - from).length());
+    for (double point = 0.5; point < points; ++point)
+      if (holds(from + (to - from) * (point / points))) return true;
+  }
+  return false;
+}
+
+// Triangles that the grid does not see, be it in a part only: OpenVDB takes surface for a fold within the
+// material, and drops it, where no point of the grid about it is outside. So it is with a void narrower than
+// a voxel, and with what of a surface that crosses itself lies within. One that is named though the grid sees
+// it costs time and changes nothing.
 std::vector<openvdb::Vec3I> hidden_triangles(const openvdb::FloatGrid& grid,
                                              const std::vector<openvdb::Vec3s>& points,
                                              const std::vector<openvdb::Vec3I>& triangles) {
+  const double voxel = grid.voxelSize()[0];
+  std::vector<char> is_hidden(triangles.size(), 0);
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, triangles.size(), 256), [&](const auto& range) {
+    const auto values = grid.getConstAccessor();
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const auto& t = triangles[i];
+      is_hidden[i] = holds_somewhere({points[t[0]], points[t[1]], points[t[2]]}, voxel, [&](const auto& p) {
+        return openvdb::tools::BoxSampler::sample(values, grid.transform().worldToIndex(p)) <
+               -kHiddenInVoxels * voxel;
+      });
+    }
+  });
   std::vector<openvdb::Vec3I> hidden;
-  const double deepest = -kHiddenInVoxels * grid.voxelSize()[0];
-  const auto is_deep = [&](const openvdb::Vec3d& p) {
-    return openvdb::tools::BoxSampler::sample(grid.tree(), grid.transform().worldToIndex(p)) < deepest;
-  };
-  for (const auto& t : triangles) {
-    const openvdb::Vec3d a = points[t[0]], b = points[t[1]], c = points[t[2]], middle = (a + b + c) / 3.0;
-    if (is_deep(middle) || is_deep(0.5 * (middle + a)) || is_deep(0.5 * (middle + b)) ||
-        is_deep(0.5 * (middle + c)))
-      hidden.push_back(t);
-  }
+  for (std::size_t i = 0; i < triangles.size(); ++i)
+    if (is_hidden[i]) hidden.push_back(triangles[i]);
   return hidden;
 }
 

@@ -65,6 +65,26 @@ TEST(DistanceField, AVoidNarrowerThanAVoxelHasWallsAllTheSame) {
   EXPECT_NEAR(skin->cavity_volume_mm3, 18.0 * 18.0 * 18.0 - walled, 40.0);
 }
 
+// Its sides are two triangles each, of which the grid sees all but the last two and a half millimetres.
+TEST(DistanceField, AVoidThatEndsNarrowerThanAVoxelHasWallsToItsTip) {
+  constexpr double kLength = 20.0, kHeight = 1.84, kTip = 0.01, kMiddle = 10.02, kBeforeTip = 1.3;
+  TriangleMesh body = bodies::box(30, 20, 20);
+  TriangleMesh wedge = bodies::box(kLength, 10, kHeight);
+  for (auto& v : wedge.vertices) v.z() = (v.z() - kHeight / 2) * (v.x() > kLength / 2 ? kTip / kHeight : 1.0);
+  const int first = static_cast<int>(body.vertices.size());
+  for (const auto& v : wedge.vertices) body.vertices.push_back(v + Eigen::Vector3d(5, 5, kMiddle));
+  for (const auto& [a, b, c] : wedge.triangles) body.triangles.push_back({first + a, first + c, first + b});
+  RunContext context;
+  const auto skin = build_skin(body, {.thickness_mm = 1.0}, context);
+  ASSERT_TRUE(skin.ok()) << skin.error().message;
+  const double half_height = 0.5 * (kTip + (kHeight - kTip) * kBeforeTip / kLength);
+  for (const double y : {7.0, 10.0, 13.0}) {
+    const double x = 5.0 + kLength - kBeforeTip;
+    EXPECT_NEAR(skin->field.at({x, y, kMiddle + 0.5}), half_height - 0.5, 0.15) << y;
+    EXPECT_NEAR(skin->field.at({x, y, kMiddle - 0.5}), half_height - 0.5, 0.15) << y;
+  }
+}
+
 TEST(DistanceField, MadeOfNothingIsZeroEverywhere) {
   const DistanceField field;
   EXPECT_EQ(field.at({1, 2, 3}), 0.0);
