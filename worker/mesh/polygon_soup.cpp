@@ -51,6 +51,7 @@ Result<MeshFile> finish(PolygonSoup soup, std::string format, int index_base, co
   file.format = std::move(format);
   file.mesh.triangles.reserve(triangle_count);
   std::size_t polygons = 0, guessed = 0, too_few = 0;
+  std::uint64_t steps_left = request.limits.max_cutting_steps;
   std::vector<int> corners;
   for (std::size_t f = 0; f < soup.faces.size(); ++f) {
     if (f % 65536 == 0 && request.context.cancelled()) return cancelled_error();
@@ -66,7 +67,18 @@ Result<MeshFile> finish(PolygonSoup soup, std::string format, int index_base, co
     }
     if (face.count < 3) ++too_few;
     if (face.count > 3) ++polygons;
-    if (!triangulate_polygon(corners, soup.vertices, file.mesh.triangles)) ++guessed;
+    switch (triangulate_polygon(corners, soup.vertices, file.mesh.triangles, &steps_left)) {
+      case Triangulation::kClean:
+        break;
+      case Triangulation::kGuessed:
+        ++guessed;
+        break;
+      case Triangulation::kTooLong:
+        return invalid_input(fmt::format(
+            "{}: the outlines of the faces up to here, this one of {} corners, take too long to cut "
+            "into triangles; triangulate the mesh where it is exported",
+            face_name(soup, f), face.count));
+    }
   }
   file.mesh.vertices = std::move(soup.vertices);
   if (!soup.colours.empty()) file.vertex_colours = colours_of_used(std::move(soup.colours), file.mesh);

@@ -35,6 +35,9 @@ struct ReadLimits {
   std::uint64_t max_vertices = 20'000'000;   // at most 2^31 - 1: indices are int
   std::uint64_t max_triangles = 10'000'000;  // at most 2^31 - 1
   std::uint64_t max_polygon_corners = 4096;  // of one face; ear clipping is quadratic and worse
+  // Of all polygons together, looking at one corner each: some seconds. A disc of 4096 corners takes 8
+  // million, and outlines made for it a thousand times as many.
+  std::uint64_t max_cutting_steps = 2'000'000'000;
 
   Status validate() const;
 };

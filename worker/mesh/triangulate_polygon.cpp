@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstddef>
+#include <cstdint>
 
 namespace skinframe {
 namespace {
@@ -39,12 +40,14 @@ struct Ring {
   std::vector<std::size_t> previous;
 };
 
-bool is_ear(std::size_t tip, const Ring& ring, const std::vector<Point>& flat) {
+bool is_ear(std::size_t tip, const Ring& ring, const std::vector<Point>& flat, std::uint64_t* steps_left) {
   const Point& a = flat[ring.previous[tip]];
   const Point& b = flat[tip];
   const Point& c = flat[ring.next[tip]];
   if (!(cross(a, b, c) > 0)) return false;
   for (std::size_t i = ring.next[ring.next[tip]]; i != ring.previous[tip]; i = ring.next[i]) {
+    if (*steps_left == 0) return false;
+    --*steps_left;
     const Point& p = flat[i];
     // A corner visited twice (the slit that joins a hole to its outline) does not block its own ear.
     if (p == a || p == b || p == c) continue;
@@ -55,13 +58,13 @@ bool is_ear(std::size_t tip, const Ring& ring, const std::vector<Point>& flat) {
 
 }  // namespace
 
-bool triangulate_polygon(std::span<const int> corners, const std::vector<Eigen::Vector3d>& vertices,
-                         std::vector<std::array<int, 3>>& triangles) {
+Triangulation triangulate_polygon(std::span<const int> corners, const std::vector<Eigen::Vector3d>& vertices,
+                                  std::vector<std::array<int, 3>>& triangles, std::uint64_t* steps_left) {
   const std::size_t n = corners.size();
-  if (n < 3) return true;
+  if (n < 3) return Triangulation::kClean;
   if (n == 3) {
     triangles.push_back({corners[0], corners[1], corners[2]});
-    return true;
+    return Triangulation::kClean;
   }
   const std::vector<Point> flat = flatten(corners, vertices);
   Ring ring{std::vector<std::size_t>(n), std::vector<std::size_t>(n)};
@@ -73,7 +76,9 @@ bool triangulate_polygon(std::span<const int> corners, const std::vector<Eigen::
   std::size_t tip = 1;
   std::size_t refused = 0;  // in a row
   while (left > 3 && refused < left) {
-    if (is_ear(tip, ring, flat)) {
+    if (*steps_left == 0) return Triangulation::kTooLong;
+    --*steps_left;
+    if (is_ear(tip, ring, flat, steps_left)) {
       const std::size_t before = ring.previous[tip];
       const std::size_t after = ring.next[tip];
       triangles.push_back({corners[before], corners[tip], corners[after]});
@@ -91,7 +96,7 @@ bool triangulate_polygon(std::span<const int> corners, const std::vector<Eigen::
   for (std::size_t b = ring.next[tip]; ring.next[b] != tip; b = ring.next[b]) {
     triangles.push_back({corners[tip], corners[b], corners[ring.next[b]]});
   }
-  return clean;
+  return clean ? Triangulation::kClean : Triangulation::kGuessed;
 }
 
 }  // namespace skinframe

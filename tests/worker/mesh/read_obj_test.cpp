@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include "tests/worker/mesh/mesh_files.h"
 
@@ -61,6 +62,20 @@ TEST(ReadObj, AFaceBeyondTheCornerLimitIsRefused) {
   ReadLimits limits;
   limits.max_polygon_corners = 4;
   EXPECT_THAT(error_of(kCornerLines + "f 1 2 3 4 1\n", limits), HasSubstr("more than 4 corners"));
+}
+
+// Within the limit of corners an outline may still take the cube of them in steps.
+TEST(ReadObj, OutlinesThatTakeTooLongToCutAreRefusedByTheLineTheyStandIn) {
+  std::string comb, face = "f";
+  constexpr int kTeeth = 200;
+  for (int i = 0; i < kTeeth; ++i) comb += fmt::format("v {} {} 0\n", i, i % 2 * 1000 + i * 7919 % 13);
+  for (int i = kTeeth; i-- > 0;) comb += fmt::format("v {} {} 0\n", i, i % 2 * 1000 + i * 7919 % 13 - 0.001);
+  for (int i = 1; i <= 2 * kTeeth; ++i) face += fmt::format(" {}", i);
+  ReadLimits limits;
+  EXPECT_TRUE(read_bytes(comb + face + "\n", limits).ok());
+  limits.max_cutting_steps = 100'000;
+  EXPECT_THAT(error_of(comb + face + "\n", limits), HasSubstr("line 401: the outlines of the faces"));
+  EXPECT_THAT(error_of(comb + face + "\n", limits), HasSubstr("400 corners, take too long to cut"));
 }
 
 TEST(ReadObj, VerticesWithoutFacesAreAnError) {

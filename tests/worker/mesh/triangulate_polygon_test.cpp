@@ -19,8 +19,9 @@ TriangleMesh cut(const Outline& outline, bool* clean = nullptr) {
   std::vector<int> corners(outline.size());
   std::iota(corners.begin(), corners.end(), 0);
   TriangleMesh mesh{outline, {}};
-  const bool result = triangulate_polygon(corners, mesh.vertices, mesh.triangles);
-  if (clean != nullptr) *clean = result;
+  std::uint64_t steps = 1'000'000;
+  const Triangulation result = triangulate_polygon(corners, mesh.vertices, mesh.triangles, &steps);
+  if (clean != nullptr) *clean = result == Triangulation::kClean;
   return mesh;
 }
 
