@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -18,6 +19,10 @@ namespace {
 
 // Of the box's diagonal.
 constexpr double kAlphaRelative = 1.0 / 150, kOffsetRelative = 1.0 / 3000;
+
+// A wrap keeps a Delaunay mesh about all that it encloses, some kilobyte for each place of it, and a ring of
+// places about each part however small. A body as large as its box has 70,000 places.
+constexpr double kMostPlaces = 300'000, kPlacesAPart = 30;
 
 // Boundary edges that hang together, whatever the senses and however many meet in a vertex.
 struct Rim {
@@ -52,6 +57,28 @@ std::vector<Rim> find_rims(const TriangleMesh& mesh) {
   return list;
 }
 
+int count_parts(const TriangleMesh& mesh) {
+  DisjointSets sets(mesh.vertices.size());
+  for (const auto& [a, b, c] : mesh.triangles) {
+    sets.join(a, b);
+    sets.join(b, c);
+  }
+  std::vector<char> is_part(mesh.vertices.size(), 0);
+  for (const auto& t : mesh.triangles) is_part[sets.find(t[0])] = 1;
+  return static_cast<int>(std::count(is_part.begin(), is_part.end(), 1));
+}
+
+// About how many places a wrap will have.
+double places(const TriangleMesh& mesh, double alpha, int parts) {
+  double sides = 0;  // of needles: their area is nothing
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Eigen::Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
+    const double longest = std::max({(p - q).norm(), (q - r).norm(), (r - p).norm()});
+    if (longest > alpha) sides += longest / alpha;
+  }
+  return surface_area(mesh) / (alpha * alpha) + sides + kPlacesAPart * parts;
+}
+
 }  // namespace
 
 Result<Wrapped> wrap_as_last_resort(TriangleMesh mesh, const std::string& defect,
@@ -71,8 +98,15 @@ Result<Wrapped> wrap_as_last_resort(TriangleMesh mesh, const std::string& defect
     for (const auto& [a, b] : rim.edges) mesh.triangles.push_back({b, a, middle});
   }
   const double diagonal = bounding_box(mesh).extent().norm();
-  const double shut_off = shut_off_volume(mesh, level_set_voxel(surface_area(mesh), diagonal));
   const double alpha = kAlphaRelative * diagonal, offset = kOffsetRelative * diagonal;
+  const int parts = count_parts(mesh);
+  if (places(mesh, alpha, parts) > kMostPlaces) {
+    return invalid_input(fmt::format(
+        "{}; and a surface of {} parts and {:.4g} mm2 is too much for a wrap around it: repair it where it "
+        "comes from, or leave out what is not to be printed",
+        defect, parts, surface_area(mesh)));
+  }
+  const double shut_off = shut_off_volume(mesh, level_set_voxel(surface_area(mesh), diagonal));
   auto wrapped = wrap_around(mesh, alpha, offset);
   if (!wrapped) return invalid_input(fmt::format("{}; and the surface could not be wrapped either", defect));
   const double volume = signed_volume(*wrapped);

@@ -23,7 +23,8 @@ struct Wrapped {
 };
 
 // `defect` is why the surface cannot be mended; it is told in the sentence and in every error. `mesh` is
-// welded, in mm. kInvalidInput when an opening is too long or the volume would change too much.
+// welded, in mm. kInvalidInput when an opening is too long, the surface is in so many
+// parts or so large for its box that a wrap would take gigabytes, or the volume would change too much.
 Result<Wrapped> wrap_as_last_resort(TriangleMesh mesh, const std::string& defect,
                                     const LastResortOptions& options);
 

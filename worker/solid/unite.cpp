@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <utility>
@@ -28,11 +29,23 @@ constexpr std::size_t kMostSelfWork = 20'000;
 constexpr double kExactAgreement = 0.005;
 
 TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<int>& triangles) {
+  // Of a surface in many parts each takes as long as it is itself, not as the whole.
+  std::vector<int> used;
+  used.reserve(3 * triangles.size());
+  for (const int t : triangles) used.insert(used.end(), mesh.triangles[t].begin(), mesh.triangles[t].end());
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
   TriangleMesh part;
-  part.vertices = mesh.vertices;
+  part.vertices.reserve(used.size());
+  for (const int v : used) part.vertices.push_back(mesh.vertices[v]);
   part.triangles.reserve(triangles.size());
-  for (const int t : triangles) part.triangles.push_back(mesh.triangles[t]);
-  drop_unused_vertices(part);
+  for (const int t : triangles) {
+    std::array<int, 3> own{};
+    for (int k = 0; k < 3; ++k)
+      own[k] =
+          static_cast<int>(std::lower_bound(used.begin(), used.end(), mesh.triangles[t][k]) - used.begin());
+    part.triangles.push_back(own);
+  }
   return part;
 }
 
