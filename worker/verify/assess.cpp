@@ -120,7 +120,7 @@ Result<Assessment> assess(const StructureSolver& solver, const FineSkin& fine,
   NodalColumns d = solver.solve(all);
   Assessment out;
   out.balance = solver.balance(d, all);
-  for (int step = 0; step < kMostRefinements && worse(out.balance) > kBalanceTolerance; ++step) {
+  for (int step = 0; step < kMostRefinements && worse(out.balance) > 0.1 * kBalanceTolerance; ++step) {
     solver.refine(all, &d);
     out.balance = solver.balance(d, all);
   }

@@ -91,6 +91,9 @@ def section(name, printer, wins):
               f"{shown(v['max_displacement_mm'])} mm. Safety factor {shown(v['safety_factor'])}, Euler factor of the "
               f"worst strut {shown(v['euler_factor'])}. Mesh of {v['mesh']['nodes']} nodes, error estimate "
               f"{100 * v['mesh']['error_estimate']:.1f} %. Report: {v['comparison']['verdict']}.", ""]
+    for key, title in DESIGNS:
+        if f"{key}_missing" in v["comparison"]:
+            lines += [f"No figures of the {title}: {v['comparison'][key + '_missing']}.", ""]
     return lines
 
 
