@@ -154,6 +154,13 @@ TEST_F(CheckTest, ACavityThatCutsItselfOrTheSurfaceIsSeen) {
   EXPECT_THAT(surface, Names("no self-intersection beyond the input's"));
 }
 
+TEST_F(CheckTest, PairsThatCutEachOtherAreDeniedThoughTheyAreToldOf) {
+  EXPECT_THAT(denied_report([](json& p) { p["crossings"] = 1; }),
+              Names("no self-intersection beyond the input's"));
+  EXPECT_THAT(denied_report([](json& p) { p["compact"]["crossings"] = 1; }),
+              Names("the compact mesh adds no self-intersection"));
+}
+
 TEST_F(CheckTest, ACompactMeshThatCutsItselfIsSeen) {
   EXPECT_THAT(denied([](const fs::path& copy) {
                 const fs::path stl = copy / kPrinter / "skin-frame-compact.stl";
