@@ -100,8 +100,10 @@ class CommandLine {
         "PNG files; their names are printed. frame.png: the struts by radius, supports in red.\n"
         "cutaway.png: the printed solid cut through its middle. radii.png, lengths.png: how many struts\n"
         "are no thicker, no longer than so much, before and after each stage of the optimiser.\n"
-        "deformation-NAME.png: the surface under a load case, where the result has\n"
-        "deformation-NAME.ply. A result of `submit FRAME.json` has the struts and the curves.\n"
+        "deformation-NAME.png: the surface under a load case; pinch.png: how far two fingers press it\n"
+        "together, by place; both where the result is verified, of the .ply files of these names. A result "
+        "of\n"
+        "`submit FRAME.json` has the struts and the curves.\n"
         "--size is the width in pixels, 120 to 4096 (1000). Exit codes: 0 drawn, 2 wrong usage, 3 no\n"
         "result in DIR, 5 the pictures cannot be written.");
     add_local("solve-frame", "The optimiser alone, on a frame problem file (runs here)",

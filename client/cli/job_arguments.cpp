@@ -21,6 +21,7 @@ const Words<v1::Balance> kBalances = {
 const Words<v1::Smooth> kSmooths = {
     {"auto", v1::SMOOTH_AUTO}, {"on", v1::SMOOTH_ON}, {"off", v1::SMOOTH_OFF}};
 const Words<v1::Orient> kOrients = {{"keep", v1::ORIENT_KEEP}, {"best", v1::ORIENT_BEST}};
+const Words<v1::Verify> kVerifies = {{"on", v1::VERIFY_ON}, {"off", v1::VERIFY_OFF}};
 const Words<v1::StageOrder> kOrders = {{"tight", v1::STAGE_ORDER_TIGHT}, {"paper", v1::STAGE_ORDER_PAPER}};
 
 template <class Enum>
@@ -45,7 +46,7 @@ v1::JobOptions options_of(const JobArguments& a) {
   out.set_orient(value_of(kOrients, a.orient));
   out.set_order(value_of(kOrders, a.order));
   out.set_no_optimize(a.no_optimize);
-  out.set_verify(a.verify);
+  out.set_verify(value_of(kVerifies, a.verify));
   if (a.size_mm) out.set_size_mm(*a.size_mm);
   if (a.skin_nodes) out.set_skin_nodes(*a.skin_nodes);
   if (a.internal_nodes) out.set_internal_nodes(*a.internal_nodes);
@@ -97,10 +98,13 @@ void add_job_options(CLI::App& verb, JobArguments& a) {
       ->check(one_of(kSmooths));
   verb.add_option("--orient", a.orient, "Keep the orientation or search the best")->check(one_of(kOrients));
   verb.add_flag("--no-optimize", a.no_optimize, "Radii stay at their lower bounds");
-  verb.add_flag(
-      "--verify", a.verify,
-      "Analyse the result by a valid model too (shell and struts with rotations): displacement, stress, "
-      "buckling, a pinch of 10 N, beside a hollow of equal mass and the solid; some seconds more");
+  verb.add_option(
+          "--verify", a.verify,
+          "Analyse the result by a valid model too (shell and struts with rotations): displacement, stress, "
+          "buckling, a pinch of 10 N, beside a hollow of equal mass and the solid; on, or off, which saves "
+          "some "
+          "seconds a printer (default on)")
+      ->check(one_of(kVerifies));
   verb.add_option("--order", a.order, "Order of the optimiser's stages")->check(one_of(kOrders));
   verb.add_option("--displacement-limit", a.displacement_limit_mm,
                   "Largest displacement in mm (default 0.05)");

@@ -24,11 +24,10 @@ struct JobArguments {
   std::vector<std::string> loads;
   std::vector<std::string> labels;
   std::optional<double> size_mm;
-  std::string up, balance, smooth, orient, order;  // empty: the server's default
+  std::string up, balance, smooth, orient, order, verify;  // empty: the server's default
   std::optional<std::int32_t> skin_nodes, internal_nodes;
   std::optional<double> voxel_mm, displacement_limit_mm;
   bool no_optimize = false;
-  bool verify = false;
   std::optional<std::uint64_t> seed;
   std::int32_t priority = 0;
   std::string deadline;

@@ -26,13 +26,18 @@ std::string printer_text(const v1::PrinterResult& printer) {
   std::string out =
       one_line(printer.printer_id()) + ": " + end_text(printer.state(), printer.reason(), printer.detail());
   if (printer.has_best_reachable_displacement_mm()) {
-    out += fmt::format("  best reachable displacement {:.3f} mm (paper's model)",
+    out += fmt::format("  best reachable displacement {:.3f} mm (paper model)",
                        printer.best_reachable_displacement_mm());
   }
   if (printer.has_statistics()) {
     const auto& s = printer.statistics();
     out += fmt::format("  total {:.0f} mm3  ratio {:.1f} %  {:.1f} g", s.total_volume_mm3(), 100 * s.ratio(),
                        s.weight_g());
+    if (s.struts() > 0) {
+      out += fmt::format("  displacement {:.4f} mm (paper model)", s.max_displacement_mm());
+      out += s.has_verified() ? fmt::format(", {:.4f} mm (verified)", s.verified().max_displacement_mm())
+                              : ", not verified";
+    }
   }
   return out;
 }

@@ -61,8 +61,9 @@ std::string verified_table(const v1::Job& job) {
   for (const v1::PrinterResult& printer : job.printers()) {
     if (!printer.has_statistics()) continue;
     if (!printer.statistics().has_verified()) {
-      if (job.spec().options().verify())
-        words += fmt::format("{}: not verified, see report.json\n", one_line(printer.printer_id()));
+      const std::string& why = printer.statistics().not_verified();
+      words += fmt::format("{}: not verified{}\n", one_line(printer.printer_id()),
+                           why.empty() ? "; the paper's model alone speaks for it" : ": " + one_line(why));
       continue;
     }
     const v1::VerifiedFigures& v = printer.statistics().verified();
@@ -77,7 +78,8 @@ std::string verified_table(const v1::Job& job) {
   }
   if (rows.size() == 1) return words;
   return table(rows, 1) + words +
-         "* by shell and struts with rigid joints; hollow: of equal printed mass; pinch: 10 N, the worst "
+         "* displacements by the valid model, shell and struts with rigid joints; hollow: of equal printed "
+         "mass; pinch: 10 N, the worst "
          "site\n";
 }
 
@@ -86,7 +88,7 @@ std::string verified_table(const v1::Job& job) {
 std::string result_table(const v1::Job& job) {
   if (job.has_frame()) return frame_table(job.frame());
   std::vector<Row> rows = {{"printer", "material", "nodes/struts", "skin mm3", "frame mm3", "total mm3",
-                            "solid mm3", "ratio", "printed mm3", "weight", "displacement*"}};
+                            "solid mm3", "ratio", "printed mm3", "weight", "paper model*"}};
   for (const v1::PrinterResult& printer : job.printers()) {
     if (!printer.has_statistics()) continue;
     const v1::PrinterStatistics& s = printer.statistics();
@@ -95,11 +97,12 @@ std::string result_table(const v1::Job& job) {
                     fmt::format("{:.0f}", s.frame_volume_mm3()), fmt::format("{:.0f}", s.total_volume_mm3()),
                     fmt::format("{:.0f}", s.solid_volume_mm3()), fmt::format("{:.1f} %", 100 * s.ratio()),
                     fmt::format("{:.0f}", s.printed_volume_mm3()), fmt::format("{:.1f} g", s.weight_g()),
-                    fmt::format("{:.4f} mm", s.max_displacement_mm())});
+                    or_dash(s.struts() > 0, s.max_displacement_mm(), "{:.4f} mm")});
   }
   if (rows.size() == 1) return {};
   const std::string verified = verified_table(job);
-  return table(rows, 2) + "* largest displacement in the paper's model, no promise about the real object\n" +
+  return table(rows, 2) +
+         "* largest displacement in the paper's model, which is no promise about the real object\n" +
          (verified.empty() ? "" : "\n" + verified);
 }
 

@@ -20,8 +20,8 @@ constexpr std::size_t kBarWidth = 16;
 
 // The stages in order, as job.proto names them. How far the work is: by stage, since the time a stage takes
 // depends on the mesh.
-constexpr std::array<std::string_view, 9> kStages = {"read", "repair",   "skin",     "stress", "sample",
-                                                     "size", "topology", "geometry", "export"};
+constexpr std::array<std::string_view, 10> kStages = {"read", "repair",   "skin",     "stress", "sample",
+                                                      "size", "topology", "geometry", "export", "verify"};
 
 std::size_t terminal_columns(std::FILE* out) {
   winsize size{};

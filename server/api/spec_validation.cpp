@@ -178,6 +178,7 @@ absl::Status check_options(const v1::JobOptions& o) {
       check_enum("smooth", v1::Smooth_IsValid(o.smooth()), o.smooth(), "auto, on, off"),
       check_enum("orient", v1::Orient_IsValid(o.orient()), o.orient(), "keep, best"),
       check_enum("order", v1::StageOrder_IsValid(o.order()), o.order(), "tight, paper"),
+      check_enum("verify", v1::Verify_IsValid(o.verify()), o.verify(), "on, off"),
       check_range("size_mm", o.has_size_mm(), o.size_mm(), 1, 2000),
       check_range("skin_nodes", o.has_skin_nodes(), o.skin_nodes(), 12, 20000),
       check_range("internal_nodes", o.has_internal_nodes(), o.internal_nodes(), 0, 20000),

@@ -11,10 +11,11 @@ from farm import Farm
 
 ROUNDS = 20 if os.environ.get("SKINFRAME_FAULTS") == "extended" else 1
 PRINTERS = ("sinterstation-hiq", "makerbot-replicator-2")
-QUICK = ("ball.stl", "--printer", PRINTERS[0], "--size", "40", "--skin-nodes", "60", "--no-optimize")
-STEADY = ("ball.stl", "--printer", PRINTERS[0], "--size", "60")  # long enough to be met at work
+QUICK = ("ball.stl", "--printer", PRINTERS[0], "--size", "40", "--skin-nodes", "60", "--no-optimize", "--verify",
+         "off")
+STEADY = ("ball.stl", "--printer", PRINTERS[0], "--size", "60", "--verify", "off")  # long enough to be met at work
 LARGE = ("ball.stl", "--printer", PRINTERS[0], "--size", "200", "--voxel", "0.2", "--skin-nodes", "60",
-         "--no-optimize")  # soon asks for 700 MB, and has no use for less
+         "--no-optimize", "--verify", "off")  # soon asks for 700 MB, and has no use for less
 
 # What begins later than this after the start is left out, and it is said; 0: nothing is.
 LATEST_MINUTES = float(os.environ.get("SKINFRAME_CONTAINERS_MINUTES", "0"))

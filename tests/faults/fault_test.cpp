@@ -70,6 +70,7 @@ v1::JobSpec FaultTest::mesh_job() {
   spec.add_printers()->set_printer_id("sinterstation-hiq");
   spec.mutable_options()->set_size_mm(40);
   spec.mutable_options()->set_skin_nodes(60);
+  spec.mutable_options()->set_verify(v1::VERIFY_OFF);
   spec.set_priority(1);
   return spec;
 }

@@ -25,7 +25,8 @@ class Survival : public testing::Test {
     return path;
   }
   std::vector<std::string> job() {
-    return {mesh(), "--printer", "sinterstation-hiq", "--size", "200", "--load", "side:top:5,0,0"};
+    return {mesh(),   "--printer",      "sinterstation-hiq", "--size", "200",
+            "--load", "side:top:5,0,0", "--verify",          "off"};
   }
   std::vector<std::int64_t> sequences(const std::string& lines) {
     std::vector<std::int64_t> found;

@@ -90,6 +90,18 @@ const char* name_of(v1::Orient orient) {
   }
 }
 
+std::optional<bool> is_on(v1::Verify verify) {
+  switch (verify) {
+    case v1::VERIFY_UNSPECIFIED:
+    case v1::VERIFY_ON:
+      return true;
+    case v1::VERIFY_OFF:
+      return false;
+    default:
+      return std::nullopt;
+  }
+}
+
 const char* name_of(v1::StageOrder order) {
   switch (order) {
     case v1::STAGE_ORDER_UNSPECIFIED:
@@ -201,7 +213,8 @@ Result<json> options_json(const v1::JobOptions& o) {
   const char* smooth = name_of(o.smooth());
   const char* orient = name_of(o.orient());
   const char* order = name_of(o.order());
-  if (!up || !balance || !smooth || !orient || !order) {
+  const std::optional<bool> verify = is_on(o.verify());
+  if (!up || !balance || !smooth || !orient || !order || !verify) {
     return internal_error("an option of the job has a value that is unknown to this worker");
   }
   return json{{"up", up},
@@ -213,7 +226,7 @@ Result<json> options_json(const v1::JobOptions& o) {
               {"smooth", smooth},
               {"orient", orient},
               {"no_optimize", o.no_optimize()},
-              {"verify", o.verify()},
+              {"verify", *verify},
               {"order", order},
               {"displacement_limit_mm",
                o.has_displacement_limit_mm() ? o.displacement_limit_mm() : kDefaultDisplacementLimitMm},

@@ -39,9 +39,17 @@ std::string last_words(const AttemptEnd& end) {
   return end.last_log_lines.empty() ? std::string() : "; its last words: " + end.last_log_lines;
 }
 
+// An allocation that fails outside any stage ends in terminate(); the C++ runtime then names the exception.
+// Below a limit of address space a thread may have no room for its stack either, nor a library for itself.
+bool starved(const AttemptEnd& end) {
+  const auto said = [&](const char* words) { return end.last_log_lines.find(words) != std::string::npos; };
+  if (end.exit.signal == SIGABRT && said("std::bad_alloc")) return true;
+  return end.memory_limit_mb > 0 &&
+         (said("Resource temporarily unavailable") || said("Cannot allocate memory"));
+}
+
 Conclusion crashed(const AttemptEnd& end) {
-  // An allocation that fails outside any stage ends in terminate(); the C++ runtime then names the exception.
-  if (end.exit.signal == SIGABRT && end.last_log_lines.find("std::bad_alloc") != std::string::npos) {
+  if (starved(end)) {
     return failed(v1::REASON_OUT_OF_MEMORY,
                   end.memory_limit_mb > 0 ? fmt::format("the job needs more than the worker's limit of {} MB",
                                                         end.memory_limit_mb)

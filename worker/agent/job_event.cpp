@@ -157,6 +157,7 @@ Result<v1::PrinterStatistics> read_statistics(const json& object) {
     if (!read) return read.error();
     *out.mutable_verified() = std::move(read).value();
   }
+  out.set_not_verified(in.text("not_verified", kMaxDetailBytes));
   if (!in.error().empty()) return invalid_input(in.error());
   return out;
 }

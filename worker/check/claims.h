@@ -112,8 +112,8 @@ std::vector<Eigen::Vector3d> own_weight_displacements_mm(const ExportedFrame& fr
 void claim_solution(const ExportedPrinter& solution, Verdict* verdict);
 
 // The valid model's figures: each load's largest displacement is that of its deformation file, whose vertices
-// stand on the frame's nodes; safety, buckling and pinch follow from the figures of loads; rows of the
-// comparison say who is better; the hollow has the printed mass.
+// stand on the frame's nodes; safety and buckling follow from the figures of loads, the pinch from its sites;
+// rows of the comparison say who is better; the hollow has the printed mass.
 void claim_verified(const ExportedPrinter& result, const TriangleMesh& body, const Surface& outer,
                     Verdict* verdict);
 

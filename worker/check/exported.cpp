@@ -266,6 +266,10 @@ Status read_listed(const std::filesystem::path& path, const json& item, Exported
     if (!file) return file.error();
     (name == "hole-lids.stl" ? printer->drain->lids_mesh : printer->drain->caps_mesh) =
         weld_equal(file->mesh);
+  } else if (name == "pinch.ply" && printer->verification) {
+    auto pinch = read_pinch(path);
+    if (!pinch) return pinch.error();
+    printer->verification->pinch = std::move(pinch).value();
   } else if (name.starts_with("support-struts") && printer->supports) {
     auto file = read_mesh(path, ReadLimits{}, context);
     if (!file) return file.error();

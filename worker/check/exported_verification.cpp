@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <stdexcept>
 
 namespace skinframe::check {
 namespace {
@@ -15,7 +16,8 @@ namespace {
 using nlohmann::json;
 
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t{1} << 28;
-constexpr std::size_t kVertexBytes = 27, kTriangleBytes = 13;
+constexpr std::size_t kMostPinchSites = 1000;
+constexpr std::size_t kPlacedBytes = 15, kFigureBytes = 4, kTriangleBytes = 13;
 
 std::optional<double> number(const json& object, const char* key) {
   const auto it = object.find(key);
@@ -23,10 +25,61 @@ std::optional<double> number(const json& object, const char* key) {
   return it->get<double>();
 }
 
-Eigen::Vector3d floats_at(const std::string& bytes, std::size_t at) {
-  float v[3];
-  std::memcpy(v, bytes.data() + at, sizeof v);
-  return {v[0], v[1], v[2]};
+Eigen::Vector3d vector3(const json& item) {
+  return {item.at(0).get<double>(), item.at(1).get<double>(), item.at(2).get<double>()};
+}
+
+double float_at(const std::string& bytes, std::size_t at) {
+  float v = 0;
+  std::memcpy(&v, bytes.data() + at, sizeof v);
+  return v;
+}
+
+// A skin with floats at its vertices, by their names.
+struct ColouredSkin {
+  std::vector<Eigen::Vector3d> at_mm;
+  std::vector<std::vector<double>> figures;
+};
+
+Result<ColouredSkin> read_skin(const std::filesystem::path& path, const std::vector<std::string>& names) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) return io_error(fmt::format("{}: {}", path.string(), error.message()));
+  if (size > kMaxBytes) return invalid_input(fmt::format("{}: {} bytes are too many", path.string(), size));
+  std::ifstream in(path, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  const std::string end = "end_header\n";
+  const std::size_t header = bytes.find(end);
+  if (!bytes.starts_with("ply\nformat binary_little_endian 1.0\n") || header == std::string::npos)
+    return invalid_input(fmt::format("{}: no binary PLY", path.string()));
+  std::size_t vertices = 0, triangles = 0;
+  std::string properties, word, wanted = "x y z red green blue ";
+  for (const std::string& name : names) wanted += name + " ";
+  std::istringstream lines(bytes.substr(0, header));
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    words >> word;
+    if (word == "element") {
+      words >> word;
+      words >> (word == "vertex" ? vertices : triangles);
+    } else if (word == "property" && triangles == 0) {
+      words >> word >> word;
+      properties += word + " ";
+    }
+  }
+  const std::size_t at = header + end.size(), vertex_bytes = kPlacedBytes + kFigureBytes * names.size();
+  if (properties != wanted || vertices > bytes.size() || triangles > bytes.size() ||
+      bytes.size() != at + vertices * vertex_bytes + triangles * kTriangleBytes)
+    return invalid_input(fmt::format("{}: its header and its size do not agree", path.string()));
+  ColouredSkin out;
+  for (std::size_t i = 0; i < vertices; ++i) {
+    const std::size_t from = at + i * vertex_bytes;
+    out.at_mm.emplace_back(float_at(bytes, from), float_at(bytes, from + 4), float_at(bytes, from + 8));
+    out.figures.emplace_back();
+    for (std::size_t k = 0; k < names.size(); ++k)
+      out.figures.back().push_back(float_at(bytes, from + kPlacedBytes + kFigureBytes * k));
+  }
+  return out;
 }
 
 // The largest of a figure over a design's loads, or the least; none where no load has it.
@@ -72,6 +125,12 @@ ExportedVerification parse_verification(const json& item) {
   out.pinch_max_mm = number(item, "pinch_max_mm");
   out.hollow_thickness_mm = number(item, "hollow_thickness_mm");
   out.hollow_max_displacement_mm = number(item, "hollow_max_displacement_mm");
+  if (item.contains("pinch") && item.at("pinch").at("sites").size() > kMostPinchSites)
+    throw std::out_of_range("verification.pinch.sites: too many");
+  if (item.contains("pinch"))
+    for (const json& site : item.at("pinch").at("sites"))
+      out.pinch_sites.push_back({{vector3(site.at("fingers_mm").at(0)), vector3(site.at("fingers_mm").at(1))},
+                                 site.at("closing_mm").get<double>()});
   for (const json& load : item.at("loads"))
     out.loads.push_back({load.at("name").get<std::string>(), load.at("max_displacement_mm").get<double>(),
                          load.at("max_skin_stress_mpa").get<double>(),
@@ -85,43 +144,22 @@ ExportedVerification parse_verification(const json& item) {
 }
 
 Result<ExportedDeformation> read_deformation(const std::filesystem::path& path) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) return io_error(fmt::format("{}: {}", path.string(), error.message()));
-  if (size > kMaxBytes) return invalid_input(fmt::format("{}: {} bytes are too many", path.string(), size));
-  std::ifstream in(path, std::ios::binary);
-  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
-  const std::string end = "end_header\n";
-  const std::size_t header = bytes.find(end);
-  if (!bytes.starts_with("ply\nformat binary_little_endian 1.0\n") || header == std::string::npos)
-    return invalid_input(fmt::format("{}: no binary PLY", path.string()));
-  std::size_t vertices = 0, triangles = 0;
-  std::string properties, word;
-  std::istringstream lines(bytes.substr(0, header));
-  for (std::string line; std::getline(lines, line);) {
-    std::istringstream words(line);
-    words >> word;
-    if (word == "element") {
-      words >> word;
-      words >> (word == "vertex" ? vertices : triangles);
-    } else if (word == "property" && triangles == 0) {
-      words >> word >> word;
-      properties += word + " ";
-    }
-  }
-  const std::size_t at = header + end.size();
-  if (properties != "x y z red green blue displacement_x displacement_y displacement_z " ||
-      vertices > bytes.size() || triangles > bytes.size() ||
-      bytes.size() != at + vertices * kVertexBytes + triangles * kTriangleBytes)
-    return invalid_input(fmt::format("{}: its header and its size do not agree", path.string()));
+  auto skin = read_skin(path, {"displacement_x", "displacement_y", "displacement_z"});
+  if (!skin) return skin.error();
   ExportedDeformation out;
   const std::string stem = path.stem().string();
   out.load = stem.substr(stem.find('-') + 1);
-  out.triangles = triangles;
-  for (std::size_t i = 0; i < vertices; ++i) {
-    out.at_mm.push_back(floats_at(bytes, at + i * kVertexBytes));
-    out.displacement_mm.push_back(floats_at(bytes, at + i * kVertexBytes + 15));
-  }
+  out.at_mm = std::move(skin->at_mm);
+  for (const auto& d : skin->figures) out.displacement_mm.emplace_back(d[0], d[1], d[2]);
+  return out;
+}
+
+Result<ExportedPinch> read_pinch(const std::filesystem::path& path) {
+  auto skin = read_skin(path, {"closing"});
+  if (!skin) return skin.error();
+  ExportedPinch out;
+  out.at_mm = std::move(skin->at_mm);
+  for (const auto& figure : skin->figures) out.closing_mm.push_back(figure[0]);
   return out;
 }
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The report's "verification" and the deformation-NAME.ply beside it, read back by the check's own few lines.
+// The report's "verification", and deformation-NAME.ply and pinch.ply beside it, read back by the check's own
+// few lines.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -17,6 +19,16 @@ struct ExportedDeformation {
   std::string load;  // of the file's name
   std::vector<Eigen::Vector3d> at_mm, displacement_mm;
   std::size_t triangles = 0;
+};
+
+struct ExportedPinch {
+  std::vector<Eigen::Vector3d> at_mm;
+  std::vector<double> closing_mm;  // at the vertices
+};
+
+struct ExportedPinchSite {
+  std::array<Eigen::Vector3d, 2> fingers_mm;
+  double closing_mm = 0;
 };
 
 struct ExportedLoadFigures {
@@ -39,6 +51,8 @@ struct ExportedVerification {
   std::vector<ExportedLoadFigures> loads;
   std::vector<ExportedRow> rows;
   std::vector<ExportedRow> of_designs;  // the same rows from the designs' own figures; `better` is empty
+  std::vector<ExportedPinchSite> pinch_sites;
+  std::optional<ExportedPinch> pinch;  // of pinch.ply
   std::string verdict;
   std::vector<ExportedDeformation> deformations;
 };
@@ -48,5 +62,6 @@ ExportedVerification parse_verification(const nlohmann::json& item);
 
 // Errors: kIo and kInvalidInput, naming the file.
 Result<ExportedDeformation> read_deformation(const std::filesystem::path& path);
+Result<ExportedPinch> read_pinch(const std::filesystem::path& path);
 
 }  // namespace skinframe::check

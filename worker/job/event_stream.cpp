@@ -29,7 +29,9 @@ double share_behind(Stage stage) {
     case Stage::kGeometry:
       return 0.6;
     case Stage::kExport:
-      return 0.75;
+      return 0.65;
+    case Stage::kVerify:
+      return 0.8;
   }
   return 0.0;
 }

@@ -8,7 +8,7 @@ namespace skinframe {
 namespace {
 
 constexpr std::array kStages = {"read", "repair",   "skin",     "stress", "sample",
-                                "size", "topology", "geometry", "export"};
+                                "size", "topology", "geometry", "export", "verify"};
 constexpr std::size_t kMostPrinters = 64;
 
 std::string known(const std::string& stage) {

@@ -48,7 +48,7 @@ class PrinterPictures {
     fs::create_directories(folder_, error);
     if (error) return internal_error(fmt::format("{}: {}", folder_.string(), error.message()));
     for (const auto step : {&PrinterPictures::draw_frame, &PrinterPictures::draw_cutaway,
-                            &PrinterPictures::draw_deformations}) {
+                            &PrinterPictures::draw_deformations, &PrinterPictures::draw_pinch}) {
       if (context_.cancelled()) return cancelled_error();
       if (Status drawn = (this->*step)(); !drawn) return drawn;
     }
@@ -85,18 +85,29 @@ class PrinterPictures {
   Status draw_deformations() {
     for (const Deformation& deformation : files_.deformations) {
       if (context_.cancelled()) return cancelled_error();
-      const auto body = read_body(deformation.path, context_);
-      if (!body) return body.error();
-      if (body->vertex_colours.size() != body->mesh.vertices.size())
-        return invalid_input(fmt::format("{}: its vertices have no colours (uchar red, green, blue)",
-                                         deformation.path.string()));
-      const Image image =
-          coloured_picture(body->mesh, body->vertex_colours, files_.title,
-                           "deformation under load case " + deformation.load_case + meaning_of_colours(*body),
-                           request_.side_px);
-      if (Status s = keep(image, "deformation-" + deformation.load_case + ".png"); !s) return s;
+      if (Status s = draw_coloured(deformation.path,
+                                   "deformation under load case " + deformation.load_case + " (verified)",
+                                   "deformation-" + deformation.load_case + ".png");
+          !s)
+        return s;
     }
     return ok_status();
+  }
+
+  Status draw_pinch() {
+    if (!files_.pinch) return ok_status();
+    return draw_coloured(*files_.pinch, "pinched by two fingers: closing distance (verified)", "pinch.png");
+  }
+
+  Status draw_coloured(const fs::path& path, const std::string& below, const std::string& name) {
+    const auto body = read_body(path, context_);
+    if (!body) return body.error();
+    if (body->vertex_colours.size() != body->mesh.vertices.size())
+      return invalid_input(
+          fmt::format("{}: its vertices have no colours (uchar red, green, blue)", path.string()));
+    return keep(coloured_picture(body->mesh, body->vertex_colours, files_.title,
+                                 below + meaning_of_colours(*body), request_.side_px),
+                name);
   }
 
   const RenderRequest& request_;

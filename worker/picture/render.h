@@ -5,6 +5,7 @@
 //   cutaway.png             skin-frame.stl        the printed solid cut open
 //   radii.png, lengths.png  frame.json            the struts' sizes before and after each stage
 //   deformation-NAME.png    deformation-NAME.ply  the surface in its own colours
+//   pinch.png               pinch.ply             how far two fingers press it together, by place
 //
 // For each printer, into its folder; of a frame job from result.json, beside it. What has no file has no
 // picture. Same files, same pictures, byte for byte.

@@ -53,7 +53,8 @@ std::vector<Deformation> deformations_in(const fs::path& folder) {
 std::vector<PrinterFiles> files_by(const json& report, const fs::path& directory) {
   std::vector<PrinterFiles> out;
   if (report.contains("frame")) {
-    if (const auto frame = if_there(directory / "result.json")) out.push_back({"", "frame", frame, {}, {}});
+    if (const auto frame = if_there(directory / "result.json"))
+      out.push_back({"", "frame", frame, {}, {}, {}});
     return out;
   }
   const std::string mesh = report.at("mesh").at("name").get<std::string>();
@@ -61,9 +62,14 @@ std::vector<PrinterFiles> files_by(const json& report, const fs::path& directory
     const auto name = item.at("printer").get<std::string>();
     if (!is_name(name)) throw std::out_of_range(fmt::format("\"{}\" is no name of a printer's folder", name));
     const fs::path folder = directory / name;
-    PrinterFiles files{name, fmt::format("{}, {}", mesh, name), if_there(folder / "frame.json"),
-                       if_there(folder / "skin-frame.stl"), deformations_in(folder)};
-    if (files.frame || files.mesh || !files.deformations.empty()) out.push_back(std::move(files));
+    PrinterFiles files{name,
+                       fmt::format("{}, {}", mesh, name),
+                       if_there(folder / "frame.json"),
+                       if_there(folder / "skin-frame.stl"),
+                       deformations_in(folder),
+                       if_there(folder / "pinch.ply")};
+    if (files.frame || files.mesh || !files.deformations.empty() || files.pinch)
+      out.push_back(std::move(files));
   }
   return out;
 }

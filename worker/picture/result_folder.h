@@ -22,6 +22,7 @@ struct PrinterFiles {
   std::string title;  // "fish.obj, sinterstation-hiq"
   std::optional<std::filesystem::path> frame, mesh;
   std::vector<Deformation> deformations;  // by name; the first kMostDeformations
+  std::optional<std::filesystem::path> pinch;
 };
 
 inline constexpr std::size_t kMostDeformations = 64;

@@ -46,6 +46,10 @@ Status make_solid(const PreparedSolid& prepared, const Skin& skin, const Printer
         "contact; see --up and --balance";
     return ok_status();
   }
+  if (options.verify)
+    s.not_verified =
+        "the body is printed solid, and the valid model is one of a skin with struts; nothing speaks for it "
+        "but its being the solid itself";
   MergedPrint print;
   PrintableMesh& printable = print.closed;
   printable.mesh = solid.mesh();

@@ -79,7 +79,7 @@ struct JobOptions {
   std::optional<double> voxel_mm;  // of the final solid
   Smooth smooth = Smooth::kAuto;   // of detail finer than the skin
   bool no_optimize = false;        // radii stay at their lower bounds
-  bool verify = false;             // analyse the result by the valid model too
+  bool verify = true;              // analyse the result by the valid model too
   StageOrder order = StageOrder::kTight;
   Orient orient = Orient::kKeep;
   double displacement_limit_mm = 0.05;  // epsilon of (6)

@@ -124,7 +124,7 @@ Status solve_frame(const FrameProblem& problem, const SolveSetting& setting, Pri
   report->termination_detail = report->optimised->detail;
   if (report->optimised->reason == Termination::kInfeasible) {
     report->reason = Reason::kInfeasible;
-    report->detail = report->optimised->detail;
+    report->detail = report->optimised->detail + " (paper model)";
   }
   return ok_status();
 }

@@ -6,12 +6,13 @@
 #include "worker/pipeline/place_loads.h"
 #include "worker/report/verification_json.h"
 #include "worker/verify/verify.h"
-#include "worker/verify/write_deformation.h"
+#include "worker/verify/write_maps.h"
 
 namespace skinframe {
 
 Status verify_result(const PreparedSolid& prepared, const Skin& skin, const JobRequest& job,
                      const std::filesystem::path& folder, PrinterReport* report, const RunContext& context) {
+  context.report({.stage = Stage::kVerify, .frame_volume_mm3 = report->statistics.frame_volume_mm3});
   const OptimizeResult& result = *report->optimised;
   VerifyInput input{.problem = result.problem,
                     .radii_mm = result.radii_mm,
@@ -29,20 +30,26 @@ Status verify_result(const PreparedSolid& prepared, const Skin& skin, const JobR
   auto verified = verify(input, context);
   if (!verified) {
     if (verified.error().kind == ErrorKind::kCancelled) return verified.error();
-    report->not_verified = verified.error().message;
+    report->statistics.not_verified = verified.error().message;
     report->warnings.push_back(
         fmt::format("not verified: the model of shell and struts has no answer for this frame ({}); only the "
                     "paper's model speaks for it",
-                    report->not_verified));
+                    verified.error().message));
     return ok_status();
   }
   report->verification = std::move(verified).value();
+  if (report->verification->mesh_error > kMeshTolerance)
+    report->warnings.push_back("verified figures: " + mesh_words(*report->verification));
   report->statistics.verified = verified_summary_json(*report->verification);
   for (const Deformation& deformation : report->verification->deformations) {
     const std::string name = fmt::format("deformation-{}.ply", deformation.name);
     if (auto written = write_deformation(*report->verification, deformation, folder / name); !written)
       return written;
     report->files.push_back(name);
+  }
+  if (report->verification->ours.pinch) {
+    if (auto written = write_pinch_map(*report->verification, folder / "pinch.ply"); !written) return written;
+    report->files.push_back("pinch.ply");
   }
   return ok_status();
 }

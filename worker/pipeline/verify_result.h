@@ -9,8 +9,9 @@
 
 namespace skinframe {
 
-// Fills report.verification and writes a deformation-NAME.ply for each load case; where that model has no
-// answer, report.not_verified and a warning say why, and the job goes on. Errors: the disk, cancellation.
+// Fills report.verification and writes a deformation-NAME.ply for each load case, and pinch.ply; where that
+// model has no answer, statistics.not_verified and a warning say why, and the job goes on. Errors: the disk,
+// cancellation.
 Status verify_result(const PreparedSolid& prepared, const Skin& skin, const JobRequest& job,
                      const std::filesystem::path& folder, PrinterReport* report, const RunContext& context);
 

@@ -197,6 +197,7 @@ json to_json(const Statistics& s) {
               {"max_displacement_mm", s.max_displacement_mm},
               {"balance", s.balance}};
   if (!s.verified.is_null()) out["verified"] = s.verified;
+  if (!s.not_verified.empty()) out["not_verified"] = s.not_verified;
   return out;
 }
 
@@ -276,14 +277,16 @@ json to_json(const PrinterReport& report) {
               {"warnings", report.warnings},
               {"seconds", report.seconds},
               {"termination", {{"reason", report.termination}, {"detail", report.termination_detail}}}};
+  // Of which model the figures above are; those of the other one stand in "verification", under its label.
+  if (report.optimised) out["label"] = out["termination"]["label"] = "paper model";
   out["files"] = report.files;
   if (report.thin) out["thin"] = thin_json(*report.thin);
   if (report.smoothing) out["smoothing"] = smoothing_json(*report.smoothing);
   if (report.sampling) out["sampling"] = sampling_json(*report.sampling);
   if (report.verification)
     out["verification"] = to_json(*report.verification);
-  else if (!report.not_verified.empty())
-    out["verification"] = not_verified_json(report.not_verified);
+  else if (!s.not_verified.empty())
+    out["verification"] = not_verified_json(s.not_verified);
   if (report.warm_start)
     out["warm_start"] = {{"job_id", report.warm_start->job_id},
                          {"reused", report.warm_start->reused},

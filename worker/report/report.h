@@ -75,6 +75,7 @@ struct Statistics {
   std::optional<double> balance_margin_mm;  // of the nominal centre of gravity inside the base contact
   std::optional<double> printed_balance_margin_mm;  // of the exported mesh's
   nlohmann::json verified;                          // verified_summary_json(); null where it is not verified
+  std::string not_verified;                         // why not, where that model was asked and has no answer
 };
 nlohmann::json to_json(const Statistics& statistics);
 
@@ -168,8 +169,7 @@ struct PrinterReport {
   std::optional<WarmStartReport> warm_start;
   std::optional<PlannedSupports> supports;   // of extrusion printers
   std::optional<Verification> verification;  // by the valid model
-  std::string not_verified;                  // why not, where that model was asked and has no answer
-  std::optional<DrainFacts> drain;          // of powder and resin printers
+  std::optional<DrainFacts> drain;           // of powder and resin printers
   std::map<std::string, double> seconds;
 };
 nlohmann::json to_json(const PrinterReport& report);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/report/verification_json.h"
 
+#include "worker/verify/pinch.h"
+
 namespace skinframe {
 namespace {
 
@@ -19,6 +21,17 @@ json load_json(const LoadFigures& load) {
           {"max_strut_stress_mpa", load.strut_stress_mpa},
           {"stress_at_mm", vector_json(load.stress_at_mm)},
           {"buckling_factor", or_null(load.buckling_factor)}};
+}
+
+json fingers_json(const PinchedSite& site) {
+  return {vector_json(site.fingers_mm[0]), vector_json(site.fingers_mm[1])};
+}
+
+json pinch_json(const PinchFigures& pinch) {
+  json sites = json::array();
+  for (const PinchedSite& site : pinch.sites)
+    sites.push_back({{"fingers_mm", fingers_json(site)}, {"closing_mm", site.closing_mm}});
+  return {{"force_n", kPinchForceN}, {"radius_mm", kPinchRadiusMm}, {"sites", sites}};
 }
 
 json rows_json(const Verification& v) {
@@ -100,10 +113,11 @@ json to_json(const Verification& v) {
   else
     out["comparison"]["solid_missing"] = v.solid_missing;
   if (const auto& pinch = v.ours.pinch) {
-    out["pinch_sites"] = pinch->sites;
+    out["pinch"] = pinch_json(*pinch);
+    out["pinch_sites"] = pinch->sites.size();
     out["pinch_mean_mm"] = pinch->mean_mm;
     out["pinch_max_mm"] = pinch->max_mm;
-    out["pinch_worst_mm"] = {vector_json(pinch->worst_mm[0]), vector_json(pinch->worst_mm[1])};
+    if (pinch->worst >= 0) out["pinch_worst_mm"] = fingers_json(pinch->sites[pinch->worst]);
   }
   return out;
 }

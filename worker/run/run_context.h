@@ -14,7 +14,7 @@
 namespace skinframe {
 
 // The stages a user sees, in order. Names of the wire: to_string().
-enum class Stage { kRead, kRepair, kSkin, kStress, kSample, kSize, kTopology, kGeometry, kExport };
+enum class Stage { kRead, kRepair, kSkin, kStress, kSample, kSize, kTopology, kGeometry, kExport, kVerify };
 
 inline const char* to_string(Stage stage) {
   switch (stage) {
@@ -36,6 +36,8 @@ inline const char* to_string(Stage stage) {
       return "geometry";
     case Stage::kExport:
       return "export";
+    case Stage::kVerify:
+      return "verify";
   }
   return "unknown";
 }

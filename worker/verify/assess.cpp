@@ -95,16 +95,11 @@ void check_euler(const Structure& s, const NodalColumns& displacements, Assessme
 
 PinchFigures measure_pinches(const Structure& s, const std::vector<PinchSite>& sites, const NodalColumns& f,
                              const NodalColumns& d) {
-  PinchFigures out;
-  out.sites = static_cast<int>(sites.size());
-  for (std::size_t c = 0; c < sites.size(); ++c) {
-    const double closing = f.col(c).dot(d.col(c)) / kPinchForceN;
-    out.mean_mm += closing / static_cast<double>(sites.size());
-    if (closing <= out.max_mm) continue;
-    out.max_mm = closing;
-    out.worst_mm = {s.nodes_mm[sites[c].node], s.nodes_mm[sites[c].opposite]};
-  }
-  return out;
+  std::vector<PinchedSite> pinched;
+  for (std::size_t c = 0; c < sites.size(); ++c)
+    pinched.push_back(
+        {{s.nodes_mm[sites[c].node], s.nodes_mm[sites[c].opposite]}, f.col(c).dot(d.col(c)) / kPinchForceN});
+  return figures_of_sites(std::move(pinched));
 }
 
 }  // namespace

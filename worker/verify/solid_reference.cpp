@@ -65,16 +65,11 @@ Result<DesignFigures> assess_solid(const VerifyInput& in, const FineSkin& fine,
   const std::size_t loads = cases.size() - pinches.size();
   for (std::size_t c = 0; c < loads; ++c) out.loads.push_back(figures_of(cases[c], (*answers)[c]));
   if (pinches.empty()) return out;
-  PinchFigures pinch;
-  pinch.sites = static_cast<int>(pinches.size());
-  for (std::size_t c = loads; c < cases.size(); ++c) {
-    const double closing = (*answers)[c].external_work_n_mm / kPinchForceN;
-    pinch.mean_mm += closing / pinch.sites;
-    if (closing <= pinch.max_mm) continue;
-    pinch.max_mm = closing;
-    pinch.worst_mm = {cases[c].loads[0].point_mm, cases[c].loads[1].point_mm};
-  }
-  out.pinch = pinch;
+  std::vector<PinchedSite> sites;
+  for (std::size_t c = loads; c < cases.size(); ++c)
+    sites.push_back({{cases[c].loads[0].point_mm, cases[c].loads[1].point_mm},
+                     (*answers)[c].external_work_n_mm / kPinchForceN});
+  out.pinch = figures_of_sites(std::move(sites));
   return out;
 }
 

@@ -19,6 +19,29 @@ Winner winner_of(Figure ours, Figure hollow, bool more_is_better) {
 
 }  // namespace
 
+std::string mesh_words(const Verification& v) {
+  if (v.mesh_error <= kMeshTolerance)
+    return fmt::format("the loads' work is known to {:.2g} %", 100 * v.mesh_error);
+  return fmt::format(
+      "the loads' work is known to {:.2g} % only, not to the {:g} % aimed at: the frame's triangles are "
+      "coarse "
+      "against the body, and {} nodes of the fine mesh do not make up for it",
+      100 * v.mesh_error, 100 * kMeshTolerance, v.nodes);
+}
+
+PinchFigures figures_of_sites(std::vector<PinchedSite> sites) {
+  PinchFigures out;
+  out.sites = std::move(sites);
+  for (std::size_t i = 0; i < out.sites.size(); ++i) {
+    const double closing = out.sites[i].closing_mm;
+    out.mean_mm += closing / static_cast<double>(out.sites.size());
+    if (closing <= out.max_mm) continue;
+    out.max_mm = closing;
+    out.worst = static_cast<int>(i);
+  }
+  return out;
+}
+
 double DesignFigures::max_displacement_mm() const {
   double worst = 0;
   for (const LoadFigures& load : loads) worst = std::max(worst, load.max_displacement_mm);

@@ -25,11 +25,18 @@ struct LoadFigures {
   std::optional<double> buckling_factor;  // first linear one; none: no multiple of the load buckles it
 };
 
-struct PinchFigures {
-  int sites = 0;
-  double mean_mm = 0, max_mm = 0;  // closing distance
-  std::array<Eigen::Vector3d, 2> worst_mm{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  // fingers
+struct PinchedSite {
+  std::array<Eigen::Vector3d, 2> fingers_mm{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  double closing_mm = 0;
 };
+
+struct PinchFigures {
+  std::vector<PinchedSite> sites;
+  double mean_mm = 0, max_mm = 0;  // closing distance
+  int worst = -1;                  // of the sites
+};
+
+PinchFigures figures_of_sites(std::vector<PinchedSite> sites);
 
 // One design under the job's loads.
 struct DesignFigures {
@@ -80,6 +87,10 @@ struct ComparedRow {
 inline constexpr double kEvenShare = 0.01;
 std::vector<ComparedRow> compare(const Verification& verification);
 const char* to_string(Winner winner);  // "skin-frame", "hollow", "even"
+
+// The mesh's error estimate against kMeshTolerance, in words: says so where it does not hold.
+inline constexpr double kMeshTolerance = 0.05;
+std::string mesh_words(const Verification& verification);
 
 // In words, of compare(): says so where hollow wins or draws every row.
 std::string verdict_of(const Verification& verification);

@@ -4,8 +4,8 @@
 //
 // The skin triangulation is divided until the work of each load changes by less than kMeshTolerance from one
 // level to the next, or until the next level would have more than kMostFineNodes nodes; the last change is
-// reported. Parts of the body that are thinner than two skins are solid in print and not in the model: their
-// stiffness is left out. So are supports of the print.
+// reported, and told in words where it is larger (mesh_words). Parts of the body that are thinner than two
+// skins are solid in print and not in the model: their stiffness is left out. So are supports of the print.
 #pragma once
 
 #include <functional>
@@ -18,7 +18,6 @@
 
 namespace skinframe {
 
-inline constexpr double kMeshTolerance = 0.05;
 inline constexpr std::size_t kMostFineNodes = 10000;
 inline constexpr int kSolidTetrahedra =
     8000;  // quadratic ones, aimed at; those cut by the surface come on top

@@ -157,7 +157,10 @@ class FolderWatch:
             self.put_aside(order, "failed", words)
             return
         self.fetch(job, pathlib.Path(order.name).stem)
-        self.put_aside(order, "done", f"{skinframe.reason_name(job.reason)} {job.detail}".strip())
+        words = [f"{printer.printer_id}: {skinframe.figures(printer)}" if printer.HasField("statistics")
+                 else f"{printer.printer_id}: {skinframe.reason_name(printer.reason)} {printer.detail}"
+                 for printer in job.printers]
+        self.put_aside(order, "done", "; ".join(words))
 
     def fetch(self, job: object, stem: str) -> None:
         """Into OUTBOX/STEM, or STEM-2 and so on where another job's result has that name."""

@@ -15,9 +15,9 @@ The messages are those of the API itself (proto/skinframe/v1, here skinframe.v1.
 """
 from .connection import Retries, connect
 from .errors import Full, Internal, NotFound, Refused, SkinframeError, Unreachable
-from .farm import Farm, describe, is_final, push, reason_name, state_name, succeeded
+from .farm import Farm, describe, figures, is_final, push, reason_name, state_name, succeeded
 
 __all__ = [
     "Farm", "Full", "Internal", "NotFound", "Refused", "Retries", "SkinframeError", "Unreachable", "connect",
-    "describe", "is_final", "push", "reason_name", "state_name", "succeeded",
+    "describe", "figures", "is_final", "push", "reason_name", "state_name", "succeeded",
 ]

@@ -31,7 +31,20 @@ def state_name(state: int) -> str:
 
 
 def reason_name(reason: int) -> str:
-    return job_pb2.Reason.Name(reason).removeprefix("REASON_")
+    """NONE while all is well."""
+    return "NONE" if reason == job_pb2.REASON_UNSPECIFIED else job_pb2.Reason.Name(reason).removeprefix("REASON_")
+
+
+def figures(printer: job_pb2.PrinterResult) -> str:
+    """Of one printer's result: its weight, and its largest displacement by each model, labelled. What holds of the
+    real object is said by the verified figure alone."""
+    known = printer.statistics
+    if known.struts == 0:
+        return f"{known.weight_g:.1f} g, solid, not verified"
+    words = f"{known.weight_g:.1f} g, displacement {known.max_displacement_mm:.4f} mm (paper model)"
+    if known.HasField("verified"):
+        return f"{words}, {known.verified.max_displacement_mm:.4f} mm (verified): {known.verified.verdict}"
+    return f"{words}, not verified" + (f": {known.not_verified}" if known.not_verified else "")
 
 
 def push(name: str, place: str, force_n: Sequence[float], radius_mm: float = 0.0) -> job_pb2.Load:
@@ -53,6 +66,8 @@ def describe(event: job_pb2.JobEvent) -> str:
                                       state.detail)))
     if kind == "printer":
         detail = f": {event.printer.detail}" if event.printer.detail else ""
+        if event.printer.HasField("statistics"):
+            detail += "  " + figures(event.printer)
         return f"{event.printer.printer_id}: {state_name(event.printer.state)}{detail}"
     progress = event.progress
     words = [progress.printer_id, progress.stage]

@@ -4,7 +4,7 @@
 
     tests/bench/truth/truth.py --models ../shared/models --bin build/release/bin
 
-Every figure comes from the report.json of `skinframe run --verify`; the words are made from the figures, so that
+Every figure comes from the report.json of `skinframe run`; the words are made from the figures, so that
 nothing here can flatter. `skinframe check` has to hold for each result, or the run ends with 1.
 """
 import argparse
@@ -24,7 +24,7 @@ EVEN = 0.01  # rows nearer than that are draws, as in the report
 
 
 def run_model(programs, mesh, folder, size_mm):
-    command = [programs / "skinframe", "run", mesh, "--printer", PRINTER, "--size", str(size_mm), "--verify",
+    command = [programs / "skinframe", "run", mesh, "--printer", PRINTER, "--size", str(size_mm),
                "--out", folder]
     for load in LOADS.values():
         command += ["--load", load]

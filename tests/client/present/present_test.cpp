@@ -65,7 +65,7 @@ TEST(EventLine, AnInfeasiblePrinterTellsTheBestReachableDisplacementAndWhoseMode
   printer->set_state(v1::JOB_STATE_FAILED);
   printer->set_reason(v1::REASON_INFEASIBLE);
   printer->set_best_reachable_displacement_mm(0.0821);
-  EXPECT_THAT(event_text(event), HasSubstr("best reachable displacement 0.082 mm (paper's model)"));
+  EXPECT_THAT(event_text(event), HasSubstr("best reachable displacement 0.082 mm (paper model)"));
 }
 
 TEST(Words, AStrangersTextCannotControlTheTerminal) {
@@ -75,7 +75,7 @@ TEST(Words, AStrangersTextCannotControlTheTerminal) {
 }
 
 TEST(ProgressBar, FillsByStageAndNeverWraps) {
-  EXPECT_THAT(progress_bar(size_event(3).progress(), 200), HasSubstr("[##########......] "));
+  EXPECT_THAT(progress_bar(size_event(3).progress(), 200), HasSubstr("[#########.......] "));
   EXPECT_EQ(progress_bar(size_event(3).progress(), 40).size(), 39u);
 }
 
@@ -173,6 +173,11 @@ TEST(ResultTable, HasTheFiguresOfTable2AndNamesTheModelOfTheDisplacement) {
     EXPECT_THAT(table, HasSubstr(figure));
   }
   EXPECT_THAT(table, Not(HasSubstr("makerbot")));
+  v1::JobEvent event;
+  *event.mutable_printer() = finished_job().printers(0);
+  EXPECT_THAT(event_text(event), HasSubstr("displacement 0.0500 mm (paper model), 1.5000 mm (verified)"));
+  event.mutable_printer()->mutable_statistics()->clear_verified();
+  EXPECT_THAT(event_text(event), HasSubstr("displacement 0.0500 mm (paper model), not verified"));
   EXPECT_THAT(end_report(finished_job()),
               HasSubstr("makerbot-replicator-2: FAILED, DOES_NOT_FIT: 50 mm too tall"));
 }
@@ -183,9 +188,10 @@ TEST(ResultTable, SetsTheVerifiedFiguresAndTheHollowsBesideThoseOfThePaper) {
     EXPECT_THAT(table, HasSubstr(figure));
   v1::Job job = finished_job();
   job.mutable_printers(0)->mutable_statistics()->clear_verified();
-  EXPECT_THAT(result_table(job), Not(HasSubstr("verified")));  // nobody asked
-  job.mutable_spec()->mutable_options()->set_verify(true);
-  EXPECT_THAT(result_table(job), HasSubstr("not verified"));
+  job.mutable_spec()->mutable_options()->set_verify(v1::VERIFY_OFF);
+  EXPECT_THAT(result_table(job), HasSubstr("not verified; the paper's model alone speaks for it"));
+  job.mutable_printers(0)->mutable_statistics()->set_not_verified("it falls apart");
+  EXPECT_THAT(result_table(job), HasSubstr("not verified: it falls apart"));
   EXPECT_THAT(result_table(job), Not(HasSubstr("1.5000")));
 }
 

@@ -14,7 +14,8 @@ import skinframe
 from skinframe.v1 import job_pb2
 
 BIN = pathlib.Path(os.environ["SKINFRAME_BIN_DIR"])
-QUICK = job_pb2.JobOptions(size_mm=40, skin_nodes=60, internal_nodes=0, no_optimize=True)
+QUICK = job_pb2.JobOptions(size_mm=40, skin_nodes=60, internal_nodes=0, no_optimize=True,
+                           verify=job_pb2.VERIFY_OFF)
 
 
 def eventually(condition: Callable[[], object], seconds: float = 60) -> bool:

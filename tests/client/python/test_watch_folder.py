@@ -61,6 +61,7 @@ class WatchFolder(FarmTest):
                         self.log())
         for name in names:
             self.assertTrue(self.result(name).exists())
+            self.assertRegex(self.log(), rf"{name}.stl: done: {PRINTER}: .* g, .* \(paper model\), .* mm \(verified\)")
         self.assertEqual(len(self.jobs()), 3)
         self.assertEqual([path for path in self.inbox.iterdir() if path.is_file()], [])
         self.assertEqual([path for path in self.outbox.iterdir() if path.name.startswith(".")], [])

@@ -148,6 +148,8 @@ TEST(SpecValidation, EnumNumbersOutsideTheApiAreRefused) {
   expect_refused([](auto& s) { s.mutable_options()->set_up(static_cast<v1::Axis>(57)); }, "options.up");
   expect_refused([](auto& s) { s.mutable_options()->set_balance(static_cast<v1::Balance>(57)); },
                  "options.balance");
+  expect_refused([](auto& s) { s.mutable_options()->set_verify(static_cast<v1::Verify>(57)); },
+                 "options.verify");
   expect_refused([](auto& s) { s.mutable_options()->set_order(static_cast<v1::StageOrder>(57)); },
                  "options.order");
 }

@@ -46,11 +46,15 @@ TEST(AssignmentTranslation, WhatTheApiLeavesOpenIsSpelledOut) {
   EXPECT_EQ(j["options"]["up"], "z");
   EXPECT_EQ(j["options"]["balance"], "auto");
   EXPECT_EQ(j["options"]["order"], "tight");
+  EXPECT_EQ(j["options"]["verify"], true);
   EXPECT_EQ(j["options"]["displacement_limit_mm"], 0.05);
   EXPECT_EQ(j["options"]["seed"], 1);
   for (const char* open : {"size_mm", "skin_nodes", "internal_nodes", "voxel_mm"}) {
     EXPECT_TRUE(j["options"].at(open).is_null()) << open;
   }
+  auto paper_alone = minimal();
+  paper_alone.mutable_spec()->mutable_options()->set_verify(v1::VERIFY_OFF);
+  EXPECT_EQ(translated(paper_alone)["options"]["verify"], false);
 }
 
 TEST(AssignmentTranslation, ProfilesKeepTheirFiguresAndAnAbsentLimitIsNull) {
@@ -149,6 +153,9 @@ TEST(AssignmentTranslation, AServerThatBreaksTheProtocolIsTold) {
   EXPECT_EQ(job_request_json(unequal, "/w/mesh", {}, 1).error().kind, ErrorKind::kInternal);
   auto unknown = minimal();
   unknown.mutable_spec()->mutable_options()->set_up(static_cast<v1::Axis>(9));
+  EXPECT_EQ(job_request_json(unknown, "/w/mesh", {}, 1).error().kind, ErrorKind::kInternal);
+  unknown = minimal();
+  unknown.mutable_spec()->mutable_options()->set_verify(static_cast<v1::Verify>(9));
   EXPECT_EQ(job_request_json(unknown, "/w/mesh", {}, 1).error().kind, ErrorKind::kInternal);
   auto nowhere = minimal();
   nowhere.mutable_spec()->add_loads()->set_name("side");

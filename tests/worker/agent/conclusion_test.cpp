@@ -60,6 +60,14 @@ TEST(Conclusion, WantOfMemoryIsToldFromACrash) {
   EXPECT_EQ(conclude(thrown).outcome.reason, v1::REASON_OUT_OF_MEMORY);
   EXPECT_THAT(conclude(thrown).outcome.detail, testing::HasSubstr("512 MB"));
   EXPECT_TRUE(conclude(thrown).retryable);
+  AttemptEnd no_thread;  // whose stack finds no room
+  no_thread.exit.signal = SIGABRT;
+  no_thread.last_log_lines =
+      "terminate called after throwing an instance of 'std::system_error'\n  what():  Resource temporarily "
+      "unavailable";
+  EXPECT_EQ(conclude(no_thread).outcome.reason, v1::REASON_CRASHED) << "nothing limits its memory";
+  no_thread.memory_limit_mb = 300;
+  EXPECT_EQ(conclude(no_thread).outcome.reason, v1::REASON_OUT_OF_MEMORY);
   AttemptEnd told;
   told.outcome = outcome(v1::JOB_STATE_FAILED, v1::REASON_OUT_OF_MEMORY);
   EXPECT_TRUE(conclude(told).retryable);

@@ -27,7 +27,8 @@ TEST(EventLine, APrinterCarriesItsReasonAndStatistics) {
   const auto line = parse_event_line(
       R"({"printer": {"printer": "p-1", "material": "pa", "state": "FAILED", "reason": "INFEASIBLE", "detail": "too weak",
           "best_reachable_displacement_mm": 0.07, "statistics": {"nodes": 380, "ratio": 0.116, "balance": "holds",
-            "verified": {"max_displacement_mm": 1.5, "pinch_max_mm": 0.25, "verdict": "even"}}}})");
+            "verified": {"max_displacement_mm": 1.5, "pinch_max_mm": 0.25, "verdict": "even"},
+            "not_verified": "never both"}}})");
   ASSERT_TRUE(line.ok());
   const auto& printer = std::get<v1::PrinterResult>(*line);
   EXPECT_EQ(printer.state(), v1::JOB_STATE_FAILED);
@@ -39,6 +40,7 @@ TEST(EventLine, APrinterCarriesItsReasonAndStatistics) {
   EXPECT_EQ(printer.statistics().verified().pinch_max_mm(), 0.25);
   EXPECT_FALSE(printer.statistics().verified().has_hollow_max_displacement_mm());
   EXPECT_EQ(printer.statistics().verified().verdict(), "even");
+  EXPECT_EQ(printer.statistics().not_verified(), "never both");
 }
 
 TEST(EventLine, ReasonNoneIsNoReason) {

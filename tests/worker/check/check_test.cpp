@@ -321,11 +321,16 @@ TEST_F(CheckTest, ADeformationThatWasChangedOrLeftOutIsSeen) {
 
 TEST_F(CheckTest, AFalseSafetyFactorAndAnUnbalancedAnswerAreSeen) {
   EXPECT_THAT(denied_report([](json& p) { p["verification"]["safety_factor"] = 1e3; }),
-              Names("stress, buckling and pinch (verified)"));
+              Names("stress and buckling (verified)"));
   EXPECT_THAT(denied_report([](json& p) { p["verification"]["balance"]["moment"] = 1e-4; }),
-              Names("stress, buckling and pinch (verified)"));
+              Names("stress and buckling (verified)"));
   EXPECT_THAT(denied_report([](json& p) { p["verification"]["pinch_mean_mm"] = 1e3; }),
-              Names("stress, buckling and pinch (verified)"));
+              Names("pinch (verified)"));
+  EXPECT_THAT(denied_report([](json& p) { p["verification"]["pinch"]["sites"][3]["closing_mm"] = 1e-9; }),
+              Names("pinch (verified)"));
+  EXPECT_THAT(
+      denied_report([](json& p) { p["verification"]["pinch"]["sites"][0]["fingers_mm"][1][2] = 500; }),
+      Names("pinch (verified)"));
 }
 
 TEST_F(CheckTest, AComparisonThatNamesTheWrongWinnerIsSeen) {

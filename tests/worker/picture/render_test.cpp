@@ -45,6 +45,7 @@ class Render : public testing::Test {
           json{{"mesh", {{"name", "egg.stl"}}}, {"printers", {{{"printer", "p-1"}}, {{"printer", "p-2"}}}}});
     write("p-1/frame.json", small_frame());
     write_text("p-1/deformation-side.ply", kPly);
+    write_text("p-1/pinch.ply", kPly);
     const TriangleMesh tetrahedron{{{0, 0, 0}, {40, 0, 0}, {0, 30, 0}, {0, 0, 25}},
                                    {{{0, 2, 1}}, {{0, 1, 3}}, {{0, 3, 2}}, {{1, 2, 3}}}};
     EXPECT_TRUE(write_stl(tetrahedron, path("p-1/skin-frame.stl")).ok());
@@ -88,7 +89,7 @@ class Render : public testing::Test {
 
 TEST_F(Render, EachFileBecomesItsPictures) {
   EXPECT_THAT(names(request()), ElementsAre("p-1/frame.png", "p-1/radii.png", "p-1/lengths.png",
-                                            "p-1/cutaway.png", "p-1/deformation-side.png"));
+                                            "p-1/cutaway.png", "p-1/deformation-side.png", "p-1/pinch.png"));
   for (const char* name : {"p-1/frame.png", "p-1/lengths.png", "p-1/cutaway.png"})
     EXPECT_TRUE(bytes(path(name)).starts_with("\x89PNG")) << name;
 }
@@ -104,6 +105,7 @@ TEST_F(Render, TheSameFilesGiveTheSameBytesAnywhere) {
 TEST_F(Render, WhatHasNoFileHasNoPicture) {
   fs::remove(path("p-1/skin-frame.stl"));
   fs::remove(path("p-1/deformation-side.ply"));
+  fs::remove(path("p-1/pinch.ply"));
   EXPECT_THAT(names(request()), ElementsAre("p-1/frame.png", "p-1/radii.png", "p-1/lengths.png"));
 }
 

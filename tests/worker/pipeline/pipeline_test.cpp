@@ -55,6 +55,7 @@ TEST(Pipeline, ABodyThinEverywhereComesBackSolidWithAWarning) {
   for (auto& v : plate.vertices) v.z() *= 1.6 / 40;
   ASSERT_TRUE(write_stl(plate, request.mesh_path).ok());
   request.options.size_mm = std::nullopt;
+  request.options.verify = true;
   RunContext context;
   auto outcomes = run_pipeline(request, folder.path() / "out", PipelineObserver{}, context);
   ASSERT_TRUE(outcomes.ok()) << outcomes.error().message;
@@ -67,6 +68,7 @@ TEST(Pipeline, ABodyThinEverywhereComesBackSolidWithAWarning) {
   EXPECT_DOUBLE_EQ(report["thin"]["fraction"], 1.0);
   EXPECT_EQ(report["counts"]["geometry"]["struts"], 0);
   EXPECT_EQ(report["balance"], "holds");
+  EXPECT_EQ(report["verification"]["label"], "not verified") << "there is no frame";
   ASSERT_EQ(report["warnings"].size(), 1u);
   EXPECT_NE(report["warnings"][0].get<std::string>().find("solid"), std::string::npos);
   auto verdicts = check::check_directory(folder.path() / "out", context);
@@ -169,6 +171,7 @@ TEST(Pipeline, PrintersSideBySideGiveWhatTheyGiveOneAfterAnother) {
 TEST(Pipeline, ProgressNamesEveryStageInOrder) {
   test::TemporaryFolder folder;
   JobRequest request = test::sample_job("egg", 60, 60, folder.path());
+  request.options.verify = true;
   std::vector<Stage> stages;
   PipelineObserver observer;
   observer.progress = [&](const PipelineProgress& p) {
@@ -179,7 +182,7 @@ TEST(Pipeline, ProgressNamesEveryStageInOrder) {
   for (const Stage stage :
        {Stage::kRead, Stage::kRepair, Stage::kSkin, Stage::kSample, Stage::kSize, Stage::kExport})
     EXPECT_NE(std::find(stages.begin(), stages.end(), stage), stages.end()) << to_string(stage);
-  EXPECT_EQ(stages.back(), Stage::kExport);
+  EXPECT_EQ(stages.back(), Stage::kVerify);
 }
 
 TEST(Pipeline, CancellationEndsTheJobWithoutAResult) {

@@ -43,6 +43,7 @@ inline JobRequest sample_job(const std::string& sample, double size_mm, int skin
   request.printers = {sinterstation_pa()};
   request.options.size_mm = size_mm;
   if (skin_nodes > 0) request.options.skin_nodes = skin_nodes;
+  request.options.verify = false;  // tests of the verification ask for it
   return request;
 }
 

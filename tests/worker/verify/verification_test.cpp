@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "worker/verify/write_deformation.h"
+#include "worker/verify/coloured_skin.h"
 
 namespace skinframe {
 namespace {
@@ -22,7 +22,6 @@ DesignFigures design(double displacement, double pinch, double buckling) {
   DesignFigures d;
   d.loads.push_back(load);
   PinchFigures pinches;
-  pinches.sites = 40;
   pinches.mean_mm = pinch / 2;
   pinches.max_mm = pinch;
   d.pinch = pinches;
@@ -66,6 +65,24 @@ TEST(Verification, WithoutAHollowNothingIsClaimedAboutIt) {
   v.hollow_missing = "it falls apart";
   EXPECT_THAT(verdict_of(v), HasSubstr("not compared"));
   for (const ComparedRow& row : compare(v)) EXPECT_EQ(row.winner, Winner::kNeither);
+}
+
+TEST(Verification, AMeshThatIsTooCoarseIsToldSo) {
+  Verification v;
+  v.mesh_error = 0.02;
+  EXPECT_THAT(mesh_words(v), HasSubstr("known to 2 %"));
+  v.mesh_error = 0.088;
+  EXPECT_THAT(mesh_words(v), HasSubstr("known to 8.8 % only, not to the 5 % aimed at"));
+}
+
+TEST(Verification, PinchFiguresAreThoseOfTheSites) {
+  std::vector<PinchedSite> sites(3);
+  sites[0].closing_mm = sites[2].closing_mm = 0.1;
+  sites[1].closing_mm = 0.4;
+  const PinchFigures pinch = figures_of_sites(sites);
+  EXPECT_DOUBLE_EQ(pinch.mean_mm, 0.2);
+  EXPECT_DOUBLE_EQ(pinch.max_mm, 0.4);
+  EXPECT_EQ(pinch.worst, 1);
 }
 
 TEST(Verification, ColoursRunFromBlueToRed) {
