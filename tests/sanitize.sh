@@ -5,7 +5,9 @@
 # A finding ends the program that has it, and this script with 1; so does a job that ends without an outcome, or that leaves
 # a file anywhere but in its folder. Files that time did not allow are named at the end.
 # Not covered: optimiser, verification, supports of extrusion, agent, server, client, check, render; memory that leaks.
-# Not part of tests/run.sh.
+# Not part of tests/run.sh. Taken on a loaded machine: build about an hour without a compiler cache, mesh 16 s (75 tests, no
+# finding). The corpus step has not been seen to its end; readers and repair alone, under the same sanitizers, went through
+# its 37 files at 60 mm in two minutes without a finding.
 # Usage: [SKINFRAME_MODELS=DIR] [SIZE=20] [MINUTES=30] tests/sanitize.sh [build] [mesh] [corpus] [FILE...]
 #   (default: build mesh corpus; MINUTES: of the corpus. FILE: this mesh too)
 set -euo pipefail
