@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -10,8 +11,9 @@
 namespace skinframe {
 namespace {
 
-constexpr double kOnRim = 0.02;   // of the rim's radius: its chords' middles stand 0.034 within
-constexpr double kWithin = 0.94;  // of the rim's radius
+constexpr double kOnRim = 0.02;      // of the rim's radius: its chords' middles stand 0.034 within
+constexpr double kWithin = 0.94;     // of the rim's radius
+constexpr double kLeastSlack = 0.5;  // of kRimSlackMm, beside any strut of the skin
 
 // A vertex as it stands to the axis.
 struct Place {
@@ -20,6 +22,43 @@ struct Place {
 };
 
 using Sides = std::map<std::pair<int, int>, int>;  // of triangles, by their directed edges
+using Triangles = std::vector<std::array<int, 3>>;
+
+// A triangle outside of the rim that has two sides on it lies across the opening, where the surface beyond is
+// folded back: its third side is flipped.
+void unfold(Triangles& triangles, const std::vector<char>& within, Sides& sides,
+            const std::set<std::pair<int, int>>& on_chain) {
+  bool changed = true;
+  for (int round = 0; round < kRimNodes && changed; ++round) {
+    changed = false;
+    for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
+      if (within[t]) continue;
+      int open = -1, chain = 0;
+      for (int k = 0; k < 3; ++k)
+        if (on_chain.count(std::minmax(triangles[t][k], triangles[t][(k + 1) % 3])) > 0) {
+          ++chain;
+        } else {
+          open = k;
+        }
+      if (chain != 2) continue;
+      const int a = triangles[t][open], b = triangles[t][(open + 1) % 3], c = triangles[t][(open + 2) % 3];
+      const auto beyond = sides.find({b, a});
+      if (beyond == sides.end()) continue;
+      const int u = beyond->second;
+      int w = -1;
+      for (const int v : triangles[u])
+        if (v != a && v != b) w = v;
+      if (sides.count({c, w}) + sides.count({w, c}) > 0) continue;
+      triangles[t] = {c, a, w};
+      triangles[u] = {w, b, c};
+      sides.erase({a, b});
+      sides.erase({b, a});
+      sides[{c, a}] = sides[{a, w}] = sides[{w, c}] = t;
+      sides[{w, b}] = sides[{b, c}] = sides[{c, w}] = u;
+      changed = true;
+    }
+  }
+}
 
 }  // namespace
 
@@ -75,10 +114,19 @@ bool open_rim(TriangleMesh& mesh, std::vector<std::pair<int, int>>& chords, cons
     }
   }
 
+  Triangles triangles = mesh.triangles;
+  unfold(triangles, within, sides, on_chain);
   std::size_t kept = 0;
-  for (std::size_t t = 0; t < within.size(); ++t)
-    if (!within[t]) mesh.triangles[kept++] = mesh.triangles[t];
-  mesh.triangles.resize(kept);
+  for (std::size_t t = 0; t < within.size(); ++t) {
+    if (within[t]) continue;
+    triangles[kept++] = triangles[t];
+    for (int k = 0; k < 3; ++k)
+      if (distance_mm(opening, mesh.vertices[triangles[t][k]], mesh.vertices[triangles[t][(k + 1) % 3]]) <
+          skin_thickness_mm + kLeastSlack * kRimSlackMm)
+        return false;
+  }
+  triangles.resize(kept);
+  mesh.triangles = std::move(triangles);
   std::vector<int> number(mesh.vertices.size(), -1);
   for (const auto& t : mesh.triangles)
     for (const int v : t) number[v] = 0;

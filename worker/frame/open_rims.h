@@ -11,8 +11,10 @@
 namespace skinframe {
 
 // Takes the triangles within the opening's rim out of a triangulation of M1, and the vertices that no
-// triangle has any more; `chords`, the edges that follow curves, the rim among them, are renumbered. False,
-// and nothing is changed, where the rim is no closed chain of chords about the axis.
+// triangle has any more; `chords`, the edges that follow curves, the rim among them, are renumbered. No edge
+// that stays is nearer to the opening than a strut as thick as the skin may be. False, and nothing is
+// changed, where the rim is no closed chain of chords about the axis, or where such an edge stays all the
+// same.
 bool open_rim(TriangleMesh& mesh, std::vector<std::pair<int, int>>& chords, const Opening& opening,
               double skin_thickness_mm);
 

@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <map>
+#include <numbers>
 
 #include "tests/worker/drain/hollow.h"
 #include "worker/frame/sample_frame.h"
@@ -76,6 +79,55 @@ TEST(OpenRims, AnOpeningThatHasNoRoomIsHandedBack) {
       sampled_with(box, {{{30, 30, 0}, down, 8, 1, 2}, {{36, 30, 0}, down, 8, 1, 2}});
   EXPECT_FALSE(sampled.unopened.empty());
   EXPECT_TRUE(sampled.frame.nodes_mm.empty());
+}
+
+// A plane about the opening: the hub, the rim and a ring twice as wide; at rim node 1 it is folded back.
+TriangleMesh folded_plane(const Opening& opening, std::vector<std::pair<int, int>>* chords) {
+  const Across to = across(opening);
+  TriangleMesh plane;
+  const auto put = [&](double radius, int i) {
+    const double angle = 2.0 * std::numbers::pi * i / kRimNodes;
+    plane.vertices.push_back(opening.centre_mm - opening.axis +
+                             radius * (std::cos(angle) * to.u + std::sin(angle) * to.v));
+  };
+  const double rim = rim_radius_mm(opening, 1.0);
+  for (int i = 0; i < kRimNodes; ++i) put(rim, i);
+  for (int i = 0; i < kRimNodes; ++i) put(2.0 * rim, i);
+  put(0.0, 0);
+  for (int i = 0; i < kRimNodes; ++i) {
+    const int next = (i + 1) % kRimNodes, out = kRimNodes + i, out_next = kRimNodes + next;
+    chords->emplace_back(i, next);
+    plane.triangles.push_back({2 * kRimNodes, i, next});
+    if (i == 0) {
+      plane.triangles.push_back({i, out, 2});
+      plane.triangles.push_back({out, out_next, 2});
+    } else if (i == 1) {
+      plane.triangles.push_back({2, 1, 0});
+      plane.triangles.push_back({next, out, out_next});
+    } else {
+      plane.triangles.push_back({next, i, out});
+      plane.triangles.push_back({next, out, out_next});
+    }
+  }
+  return plane;
+}
+
+TEST(OpenRim, WhatIsFoldedBackOverTheOpeningIsUnfolded) {
+  const Opening opening{{35, 30, 0}, -Eigen::Vector3d::UnitZ(), 8, 1, 2};
+  std::vector<std::pair<int, int>> chords;
+  TriangleMesh plane = folded_plane(opening, &chords);
+  const auto reach = [&] {
+    double least = 1e9;
+    for (const auto& t : plane.triangles)
+      for (int k = 0; k < 3; ++k)
+        least = std::min(least, distance_mm(opening, plane.vertices[t[k]], plane.vertices[t[(k + 1) % 3]]));
+    return least;
+  };
+  ASSERT_TRUE(open_rim(plane, chords, opening, 1.0));
+  EXPECT_EQ(plane.vertices.size(), 2u * kRimNodes);
+  EXPECT_EQ(plane.triangles.size(), 2u * kRimNodes);
+  EXPECT_EQ(chords.size(), static_cast<std::size_t>(kRimNodes));
+  EXPECT_GE(reach(), 1.0 + 0.5 * kRimSlackMm);
 }
 
 TEST(OpenRim, ChangesNothingWhereNoChainRunsAboutTheOpening) {
