@@ -110,6 +110,13 @@ class Placing {
       if (diameter <= rule.least_diameter_mm * (1.0 + 1e-9)) break;
       diameter = std::max(rule.least_diameter_mm, kNextSmaller * diameter);
     }
+    for (const Opening& opening : placed.openings)
+      if (2.0 * opening.radius_mm < rule.diameter_mm)
+        placed.warnings.push_back(fmt::format(
+            "the drain hole at ({:.1f}, {:.1f}, {:.1f}) mm is {:.3g} mm wide, not {:.3g}: its cavity's skin "
+            "has no room for wider ones",
+            opening.centre_mm.x(), opening.centre_mm.y(), opening.centre_mm.z(), 2.0 * opening.radius_mm,
+            rule.diameter_mm));
     for (std::size_t k = 0; k < cavities_.size(); ++k)
       if (k >= served || count[k] < wanted(k))
         placed.warnings.push_back(words(cavities_[k], count[k], k < served ? wanted(k) : 1, rule));

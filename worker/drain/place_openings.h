@@ -34,7 +34,9 @@ struct KeepAway {
 
 struct PlacedOpenings {
   std::vector<Opening> openings;
-  std::vector<std::string> warnings;  // a cavity with fewer holes than the rule asks for, and what would help
+  // A hole narrower than the rule's diameter; a cavity with fewer holes than it asks for, and what would
+  // help.
+  std::vector<std::string> warnings;
 };
 
 inline constexpr double kRefusedInRadii = 0.4;

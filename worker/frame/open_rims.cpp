@@ -24,39 +24,51 @@ struct Place {
 using Sides = std::map<std::pair<int, int>, int>;  // of triangles, by their directed edges
 using Triangles = std::vector<std::array<int, 3>>;
 
-// A triangle outside of the rim that has two sides on it lies across the opening, where the surface beyond is
-// folded back: its third side is flipped.
-void unfold(Triangles& triangles, const std::vector<char>& within, Sides& sides,
+// Triangles outside of the rim whose corners all stand on it lie across the opening: there the surface beyond
+// is folded back. With the triangle that they hang on by their one other side they become a fan about its
+// far corner. `sides` is not kept up to date.
+void unfold(Triangles& triangles, const std::vector<char>& within, const Sides& sides,
             const std::set<std::pair<int, int>>& on_chain) {
-  bool changed = true;
-  for (int round = 0; round < kRimNodes && changed; ++round) {
-    changed = false;
-    for (int t = 0; t < static_cast<int>(triangles.size()); ++t) {
-      if (within[t]) continue;
-      int open = -1, chain = 0;
-      for (int k = 0; k < 3; ++k)
-        if (on_chain.count(std::minmax(triangles[t][k], triangles[t][(k + 1) % 3])) > 0) {
-          ++chain;
-        } else {
-          open = k;
+  std::set<int> on_rim;
+  for (const auto& [a, b] : on_chain) on_rim.insert({a, b});
+  const auto is_folded = [&](int t) {
+    return !within[t] &&
+           std::all_of(triangles[t].begin(), triangles[t].end(), [&](int v) { return on_rim.count(v) > 0; });
+  };
+  std::vector<int> folded;
+  for (int t = 0; t < static_cast<int>(triangles.size()); ++t)
+    if (is_folded(t)) folded.push_back(t);
+  std::set<int> seen;
+  for (const int first : folded) {
+    if (!seen.insert(first).second) continue;
+    std::vector<int> flap{first};
+    std::vector<std::pair<int, int>> rim, hinge;
+    for (std::size_t i = 0; i < flap.size(); ++i)
+      for (int k = 0; k < 3; ++k) {
+        const int a = triangles[flap[i]][k], b = triangles[flap[i]][(k + 1) % 3];
+        const auto beyond = sides.find({b, a});
+        if (on_chain.count(std::minmax(a, b)) > 0) {
+          rim.emplace_back(a, b);
+        } else if (beyond == sides.end() ||
+                   !std::binary_search(folded.begin(), folded.end(), beyond->second)) {
+          hinge.emplace_back(a, b);
+        } else if (seen.insert(beyond->second).second) {
+          flap.push_back(beyond->second);
         }
-      if (chain != 2) continue;
-      const int a = triangles[t][open], b = triangles[t][(open + 1) % 3], c = triangles[t][(open + 2) % 3];
-      const auto beyond = sides.find({b, a});
-      if (beyond == sides.end()) continue;
-      const int u = beyond->second;
-      int w = -1;
-      for (const int v : triangles[u])
-        if (v != a && v != b) w = v;
-      if (sides.count({c, w}) + sides.count({w, c}) > 0) continue;
-      triangles[t] = {c, a, w};
-      triangles[u] = {w, b, c};
-      sides.erase({a, b});
-      sides.erase({b, a});
-      sides[{c, a}] = sides[{a, w}] = sides[{w, c}] = t;
-      sides[{w, b}] = sides[{b, c}] = sides[{c, w}] = u;
-      changed = true;
-    }
+      }
+    if (hinge.size() != 1 || rim.size() != flap.size() + 1) continue;
+    const auto [a, b] = hinge.front();
+    const auto holder = sides.find({b, a});
+    if (holder == sides.end() || !seen.insert(holder->second).second) continue;
+    int far = -1;
+    for (const int v : triangles[holder->second])
+      if (v != a && v != b) far = v;
+    const bool is_free = std::all_of(rim.begin(), rim.end(), [&](const auto& side) {
+      return side.second == a || sides.count({side.second, far}) + sides.count({far, side.second}) == 0;
+    });
+    if (!is_free) continue;
+    flap.push_back(holder->second);
+    for (std::size_t i = 0; i < flap.size(); ++i) triangles[flap[i]] = {rim[i].first, rim[i].second, far};
   }
 }
 

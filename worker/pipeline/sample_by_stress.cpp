@@ -31,7 +31,7 @@ PlacedOpenings place_holes(const PreparedSolid& prepared, const Skin& skin, cons
 // left out.
 Result<SampledFrame> sample_with_holes(const PreparedSolid& prepared, const Skin& skin, FrameOptions options,
                                        const DrainHoleRule& asked, const std::vector<Load>& loads, Laps& laps,
-                                       PrinterReport* report, RunContext& context) {
+                                       RunContext& context) {
   std::vector<Opening> refused;
   PlacedOpenings placed = place_holes(prepared, skin, options.stress, asked, loads, refused, context);
   for (int placings = 1;; ++placings) {
@@ -57,7 +57,10 @@ Result<SampledFrame> sample_with_holes(const PreparedSolid& prepared, const Skin
       }
       continue;
     }
-    report->warnings.insert(report->warnings.end(), placed.warnings.begin(), placed.warnings.end());
+    if (sampled) {
+      auto& warnings = sampled.value().warnings;
+      warnings.insert(warnings.end(), placed.warnings.begin(), placed.warnings.end());
+    }
     return sampled;
   }
 }
@@ -115,7 +118,7 @@ Result<SampledFrame> sample_by_stress(const PreparedSolid& prepared, const Skin&
   FrameOptions options = frame_options(request, job);
   options.stress = stress ? &*stress : nullptr;
   const auto holes = request.printer.holes_to_make();
-  auto sampled = holes ? sample_with_holes(prepared, skin, options, *holes, job.loads, laps, report, context)
+  auto sampled = holes ? sample_with_holes(prepared, skin, options, *holes, job.loads, laps, context)
                        : sample_frame(skin, options, context);
   if (!sampled) return sampled.error();
   report->warnings.insert(report->warnings.end(), sampled->warnings.begin(), sampled->warnings.end());

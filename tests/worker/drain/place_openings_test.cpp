@@ -74,6 +74,8 @@ TEST(PlaceOpenings, TakesASmallerHoleWhereTheRuleAllowsIt) {
     EXPECT_LT(opening.radius_mm, 10);
     EXPECT_GE(opening.radius_mm, 2.5);
   }
+  EXPECT_THAT(placed.warnings, testing::SizeIs(2));
+  EXPECT_THAT(placed.warnings, testing::Each(testing::HasSubstr("mm wide, not 20")));
 }
 
 TEST(PlaceOpenings, WhatWasRefusedIsPlacedElsewhereOrSmaller) {
