@@ -3,15 +3,12 @@
 //
 //   (K + lambda K_g) phi = 0,   K_g: geometric stiffness of the stress of a solved load case.
 //
-// Solved as -K_g phi = mu K phi for the largest mu = 1 / lambda by Lanczos' method, with the factorisation of
-// K at hand: shift and invert about lambda = 0. All load cases go in step, so that each solve serves all of
-// them; Spectra, one case at a time and with a product of K for each inner product, takes three times as long
-// and is the oracle of the tests. A strut that has to buckle by itself needs an inner node (two parts find
-// the pinned column's load to 1 %).
+// Solved as -K_g phi = mu K phi for the largest mu = 1 / lambda by Spectra's Lanczos method, with the halves
+// of K's factorisation about K_g: shift and invert about lambda = 0. A strut that has to buckle by itself
+// needs an inner node (two parts find the pinned column's load to 1 %).
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "worker/structure/solve_structure.h"
 
@@ -19,10 +16,8 @@ namespace skinframe {
 
 inline constexpr double kBucklingTolerance = 1e-4;  // relative, of mu
 
-// displacements: one column a load case, as solved. None: nothing is compressed so that any multiple of the
-// load would buckle it. Error: kInternal when the iteration does not converge.
-Result<std::vector<std::optional<double>>> buckling_factors(const StructureSolver& solver,
-                                                            const NodalColumns& displacements);
+// displacement: of one load case. None: nothing is compressed so that any multiple of the load would buckle
+// it. Error: kInternal when the iteration does not converge.
 Result<std::optional<double>> buckling_factor(const StructureSolver& solver,
                                               const Eigen::VectorXd& displacement);
 

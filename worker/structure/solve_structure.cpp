@@ -6,6 +6,7 @@
 #include <Eigen/CholmodSupport>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <new>
 
 #include "worker/run/ordering_turn.h"
 
@@ -62,6 +63,19 @@ void add_forces(const std::vector<Vector3d>& at_mm, const std::array<int, N>& no
     forces->template middleRows<6>(6 * nodes[i]) += f.template middleRows<6>(6 * i);
 }
 
+// Eigen's wrapper, which solves by the whole factor, with solves by its parts.
+class Factor : public Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> {
+ public:
+  VectorXd solve_part(int system, VectorXd x) {
+    cholmod_dense right = Eigen::viewAsCholmod(x);
+    cholmod_dense* solved = cholmod_solve(system, m_cholmodFactor, &right, &cholmod());
+    if (solved == nullptr) throw std::bad_alloc();
+    x = VectorXd::Map(static_cast<const double*>(solved->x), x.size());
+    cholmod_free_dense(&solved, &cholmod());
+    return x;
+  }
+};
+
 }  // namespace
 
 struct StructureSolver::Impl {
@@ -71,7 +85,7 @@ struct StructureSolver::Impl {
   SparseMatrix held_removed;  // lower half, free freedoms only
   std::vector<int> place;     // of a freedom among the free ones, -1
   int free = 0;
-  Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> factor;
+  Factor factor;
 
   void number_freedoms() {
     const std::size_t n = structure.nodes_mm.size();
@@ -201,9 +215,14 @@ Balance StructureSolver::balance(const NodalColumns& d, const NodalColumns& f) c
 }
 
 int StructureSolver::free_count() const { return impl_->free; }
-Eigen::MatrixXd StructureSolver::solve_free(const Eigen::MatrixXd& x) const { return impl_->factor.solve(x); }
 VectorXd StructureSolver::multiply_free(const VectorXd& x) const {
   return impl_->held_removed.selfadjointView<Eigen::Lower>() * x;
+}
+VectorXd StructureSolver::half_solve_free(const VectorXd& x) const {
+  return impl_->factor.solve_part(CHOLMOD_L, impl_->factor.solve_part(CHOLMOD_P, x));
+}
+VectorXd StructureSolver::other_half_solve_free(const VectorXd& x) const {
+  return impl_->factor.solve_part(CHOLMOD_Pt, impl_->factor.solve_part(CHOLMOD_Lt, x));
 }
 int StructureSolver::free_index(int node, int freedom) const { return impl_->place[6 * node + freedom]; }
 

@@ -42,10 +42,12 @@ class StructureSolver {
   // Worst over the load cases: reactions against loads.
   Balance balance(const NodalColumns& displacements, const NodalColumns& loads_n) const;
 
-  // For eigenvalue problems on the free freedoms: x <- K^-1 x and x <- K x, and the way there and back.
+  // For eigenvalue problems on the free freedoms: x <- K x, and the halves of K^-1 = H^T H: x <- H x and
+  // x <- H^T x. (H = L^-1 P, for the factor L of K with its rows and columns in CHOLMOD's order P.)
   int free_count() const;
-  Eigen::MatrixXd solve_free(const Eigen::MatrixXd& x) const;
   Eigen::VectorXd multiply_free(const Eigen::VectorXd& x) const;
+  Eigen::VectorXd half_solve_free(const Eigen::VectorXd& x) const;
+  Eigen::VectorXd other_half_solve_free(const Eigen::VectorXd& x) const;
   int free_index(int node, int freedom) const;  // -1: held, or joined to nothing
 
  private:

@@ -125,12 +125,12 @@ Result<Assessment> assess(const StructureSolver& solver, const FineSkin& fine,
                     out.balance.force, out.balance.moment));
   out.displacements = d.leftCols(loads.cols());
   out.figures.weight_g = structure_volume_mm3(s) * s.weight_density_n_mm3 / kGravityMmPerS2 * 1e6;
-  if (context.cancelled()) return cancelled_error();
-  const auto factors = buckling_factors(solver, out.displacements);
-  if (!factors) return factors.error();
   for (std::size_t c = 0; c < cases.size(); ++c) {
+    if (context.cancelled()) return cancelled_error();
+    const auto factor = buckling_factor(solver, d.col(c));
+    if (!factor) return factor.error();
     LoadFigures figures = measure(s, fine.frame.nodes_mm.size(), cases[c], d.col(c));
-    figures.buckling_factor = (*factors)[c];
+    figures.buckling_factor = *factor;
     out.figures.loads.push_back(std::move(figures));
   }
   if (!pinches.empty()) out.figures.pinch = measure_pinches(s, pinches, pinch, d.rightCols(pinch.cols()));
