@@ -18,7 +18,9 @@ namespace {
 // A flat wall that runs through the grid's points leaves there the sign to rounding, and its surface becomes
 // a crumpled sheet of triangles back to back. A thousandth of a voxel deeper it does not.
 constexpr double kOffLatticeInVoxels = 1e-3;
-constexpr double kHiddenInVoxels = 0.5;  // below the surface, of a point of it
+// Below the surface, of a point of it. Beside sharp edges interpolation alone is off by more than half a
+// voxel.
+constexpr double kHiddenInVoxels = 0.75;
 
 using Corners = std::array<openvdb::Vec3d, 3>;
 
