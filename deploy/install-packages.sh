@@ -10,7 +10,7 @@ build=(g++ cmake ninja-build pkg-config libeigen3-dev libcgal-dev libceres-dev l
        libsuitesparse-dev libmetis-dev libopenblas-dev liblapack-dev libopenvdb-dev libtbb-dev libboost-dev
        libboost-iostreams-dev libblosc-dev zlib1g-dev libsqlite3-dev libpqxx-dev libssl-dev
        libminizip-dev libexpat1-dev libspectra-dev prometheus-cpp-dev libpng-dev libfreetype-dev fonts-dejavu-core)
-tests=(libgtest-dev libgmock-dev prusa-slicer openssl coinor-libipopt-dev
+tests=(libgtest-dev libgmock-dev prusa-slicer calculix-ccx openssl coinor-libipopt-dev
        spin postgresql-15 util-linux ccache python3-pip python3-setuptools python3-wheel python3-grpcio
        python3-protobuf systemd)
 
