@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 namespace skinframe {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kPoints = 300000;  // of the lattice, in the body's box
+constexpr double kPoints = 300000;  // in the body's box, one anywhere in each cell of a lattice
 
 }  // namespace
 
@@ -17,11 +18,15 @@ double equal_volume_wall_mm(const Skin& skin, double solid_volume_mm3, double vo
   const double spacing = std::cbrt(extent.prod() / kPoints);
   const Eigen::Vector3i cells = (extent / spacing).array().ceil().cast<int>().max(1);
   const Vector3d step = extent.cwiseQuotient(cells.cast<double>());
+  // Not the cells' middles: below a flat face these are all as deep as each other.
+  std::mt19937 random(1);
+  const auto share_of_cell = [&] { return random() * 0x1p-32; };
   std::vector<double> depths;
   for (int z = 0; z < cells.z(); ++z)
     for (int y = 0; y < cells.y(); ++y)
       for (int x = 0; x < cells.x(); ++x) {
-        const double depth = -skin.field.at(low + step.cwiseProduct(Vector3d(x + 0.5, y + 0.5, z + 0.5)));
+        const Vector3d at{x + share_of_cell(), y + share_of_cell(), z + share_of_cell()};
+        const double depth = -skin.field.at(low + step.cwiseProduct(at));
         if (depth > 0) depths.push_back(depth);
       }
   if (depths.empty()) return skin.thickness_mm;
