@@ -15,7 +15,9 @@ constexpr double kLooksAway = -0.5;  // cosine of the opposite wall's normal
 constexpr double kLooksAlike = 0.3;  // cosine, of the nodes of one patch
 constexpr double kLeastApartInSkins = 4;
 constexpr double kFurthestInRadii = 1;  // of the exit from the nearest node
-constexpr double kOffM1InSkins = 0.25;  // at most: nodes that were left on a chord have no skin to press on
+// Nodes that were left on a chord, or that stand in a fold of it, have no skin to press on.
+constexpr double kOffM1InSkins = 0.25;  // at most
+constexpr double kLooksOut = 0.7;       // cosine, at least, of a node's normal and the way out
 constexpr double kFarMm = 1e5;
 
 double squared(const Vector3d& v) { return v.squaredNorm(); }
@@ -50,12 +52,14 @@ std::vector<PinchSite> all_sites(const FineSkin& fine, const Skin& skin, const T
   const auto& nodes = fine.frame.nodes_mm;
   constexpr std::size_t kMostTried = 3000;
   const std::size_t stride = std::max<std::size_t>(1, nodes.size() / kMostTried);
-  std::vector<char> is_on_m1;
-  for (const Vector3d& p : nodes)
-    is_on_m1.push_back(std::abs(skin.field.at(p) + skin.thickness_mm) <= kOffM1InSkins * skin.thickness_mm);
+  std::vector<char> is_in_skin;
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    is_in_skin.push_back(std::abs(skin.field.at(nodes[i]) + skin.thickness_mm) <=
+                             kOffM1InSkins * skin.thickness_mm &&
+                         fine.normals[i].dot(skin.field.gradient(nodes[i]).stableNormalized()) >= kLooksOut);
   std::vector<PinchSite> sites;
   for (std::size_t i = 0; i < nodes.size(); i += stride) {
-    if (!is_on_m1[i]) continue;
+    if (!is_in_skin[i]) continue;
     const Vector3d inward = -fine.normals[i];
     const double out = body.way_out(nodes[i], inward, kFarMm);
     if (out >= kFarMm || out < kLeastApartInSkins * skin.thickness_mm) continue;
@@ -64,7 +68,7 @@ std::vector<PinchSite> all_sites(const FineSkin& fine, const Skin& skin, const T
     double least = kFurthestInRadii * kFurthestInRadii * kPinchRadiusMm * kPinchRadiusMm;
     for (std::size_t k = 0; k < nodes.size(); ++k) {
       const double d = squared(nodes[k] - exit);
-      if (d >= least || !is_on_m1[k] || fine.normals[k].dot(fine.normals[i]) > kLooksAway) continue;
+      if (d >= least || !is_in_skin[k] || fine.normals[k].dot(fine.normals[i]) > kLooksAway) continue;
       least = d;
       opposite = static_cast<int>(k);
     }
