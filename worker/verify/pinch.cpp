@@ -17,7 +17,7 @@ constexpr double kLeastApartInSkins = 4;
 constexpr double kFurthestInRadii = 1;  // of the exit from the nearest node
 // Nodes that were left on a chord, or that stand in a fold of it, have no skin to press on.
 constexpr double kOffM1InSkins = 0.25;  // at most
-constexpr double kLooksOut = 0.7;       // cosine, at least, of a node's normal and the way out
+constexpr double kLooksOut = 0.8;       // cosine, at least, of a node's normal and the way out
 constexpr double kFarMm = 1e5;
 
 double squared(const Vector3d& v) { return v.squaredNorm(); }
