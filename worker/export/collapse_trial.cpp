@@ -12,7 +12,7 @@ namespace {
 constexpr double kLeastTurnCosine = 0.3;   // of a triangle's normal in one collapse
 constexpr double kLeastFoldCosine = -0.9;  // of two triangles with a side in common
 constexpr double kLeastRoundness = 0.03;   // 4 sqrt(3) area / sum of squared sides: 1 where all are equal
-constexpr double kCellInEdges = 1.2;
+constexpr double kCellInEdges = 2.2;
 constexpr double kClear = 0.4;  // of the deviation: below it the points are trusted
 constexpr double kAbout =
     1.5;  // times the distance of the nearest point: others that tell of the surface there
@@ -136,7 +136,7 @@ bool CollapseTrial::is_on_surface(const Eigen::Vector3d& place) const {
   }
   if (state_.original == nullptr) return low <= limits_.deviation_mm || star_places_.empty();
   if (high <= kClear * limits_.deviation_mm && !star_places_.empty()) return true;
-  return state_.original->distance_mm(place) <= limits_.deviation_mm;
+  return state_.original->is_within(place, limits_.deviation_mm);
 }
 
 // The new triangles meet no other one but where they share a corner or a side.

@@ -39,7 +39,7 @@ double furthest(const TriangleMesh& mesh, const TriangleTree& tree) {
       tbb::blocked_range<std::size_t>(0, mesh.vertices.size() + mesh.triangles.size(), 1024), 0.0,
       [&](const auto& range, double most) {
         for (std::size_t i = range.begin(); i < range.end(); ++i)
-          most = std::max(most, tree.distance_mm(probe(i)));
+          if (!tree.is_within(probe(i), most)) most = tree.distance_mm(probe(i));
         return most;
       },
       [](double x, double y) { return std::max(x, y); });

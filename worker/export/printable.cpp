@@ -151,8 +151,7 @@ Result<Cavity> make_cavity(const TriangleMesh& mesh, const Skin& skin, const Fra
   return_free_memory();
   fill_slivers(*cavity_grid);
   steps.done("struts");
-  TriangleMesh cavity = iso_surface(*cavity_grid, 0.0);
-  cavity_grid.reset();
+  TriangleMesh cavity = iso_surface(std::move(cavity_grid), 0.0);
   return_free_memory();
   if (context.cancelled()) return cancelled_error();
 

@@ -71,6 +71,58 @@ std::vector<openvdb::Vec3I> hidden_triangles(const openvdb::FloatGrid& grid,
   return hidden;
 }
 
+double just_below(const openvdb::FloatGrid& grid, double iso_mm) {
+  return iso_mm - kOffLatticeInVoxels * grid.voxelSize()[0];
+}
+
+// Takes what the mesher has. OpenVDB winds its faces clockwise seen from the larger values: turned about
+// here.
+TriangleMesh triangles_of(openvdb::tools::VolumeToMesh& mesher) {
+  TriangleMesh mesh;
+  mesh.vertices.resize(mesher.pointListSize());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.vertices.size(), 4096), [&](const auto& range) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i) {
+      const openvdb::Vec3s& p = mesher.pointList()[i];
+      mesh.vertices[i] = {p.x(), p.y(), p.z()};
+    }
+  });
+  mesher.pointList().reset();  // before the triangles take as much
+  // Single triangles of all pools first, then the quads.
+  const std::size_t pools = mesher.polygonPoolListSize();
+  std::vector<std::size_t> first_single(pools + 1, 0), first_quad(pools + 1, 0);
+  for (std::size_t n = 0; n < pools; ++n) {
+    first_single[n + 1] = first_single[n] + mesher.polygonPoolList()[n].numTriangles();
+    first_quad[n + 1] = first_quad[n] + mesher.polygonPoolList()[n].numQuads();
+  }
+  mesh.triangles.resize(first_single[pools] + 2 * first_quad[pools]);
+  const auto set = [&](std::size_t t, unsigned a, unsigned b, unsigned c) {
+    mesh.triangles[t] = {static_cast<int>(a), static_cast<int>(b), static_cast<int>(c)};
+  };
+  const auto point = [&](unsigned i) { return openvdb::Vec3s(mesh.vertices[i].data()); };  // floats again
+  const auto squared = [&](unsigned i, unsigned j) { return (point(i) - point(j)).lengthSqr(); };
+  tbb::parallel_for(std::size_t{0}, pools, [&](std::size_t n) {
+    auto& pool = mesher.polygonPoolList()[n];
+    for (std::size_t i = 0; i < pool.numTriangles(); ++i) {
+      const auto& t = pool.triangle(i);
+      set(first_single[n] + i, t[2], t[1], t[0]);
+    }
+    for (std::size_t i = 0; i < pool.numQuads(); ++i) {
+      const auto& q = pool.quad(i);
+      const std::size_t t = first_single[pools] + 2 * (first_quad[n] + i);
+      if (squared(q[0], q[2]) <= squared(q[1], q[3])) {
+        set(t, q[2], q[1], q[0]);
+        set(t + 1, q[3], q[2], q[0]);
+      } else {
+        set(t, q[1], q[0], q[3]);
+        set(t + 1, q[3], q[2], q[1]);
+      }
+    }
+    pool.clearQuads();
+    pool.clearTriangles();
+  });
+  return mesh;
+}
+
 }  // namespace
 
 openvdb::FloatGrid::Ptr distance_grid(const TriangleMesh& mesh, double voxel_mm, double outer_voxels,
@@ -96,31 +148,16 @@ openvdb::FloatGrid::Ptr distance_grid(const TriangleMesh& mesh, double voxel_mm,
 }
 
 TriangleMesh iso_surface(const openvdb::FloatGrid& grid, double iso_mm) {
-  std::vector<openvdb::Vec3s> points;
-  std::vector<openvdb::Vec3I> triangles;
-  std::vector<openvdb::Vec4I> quads;
-  const double off_lattice = kOffLatticeInVoxels * grid.voxelSize()[0];
-  openvdb::tools::volumeToMesh(grid, points, triangles, quads, iso_mm - off_lattice, 0.0);
+  openvdb::tools::VolumeToMesh mesher(just_below(grid, iso_mm), 0.0);
+  mesher(grid);
+  return triangles_of(mesher);
+}
 
-  TriangleMesh mesh;
-  mesh.vertices.reserve(points.size());
-  for (const auto& p : points) mesh.vertices.emplace_back(p.x(), p.y(), p.z());
-  mesh.triangles.reserve(triangles.size() + 2 * quads.size());
-  const auto add = [&](unsigned a, unsigned b, unsigned c) {
-    mesh.triangles.push_back({static_cast<int>(a), static_cast<int>(b), static_cast<int>(c)});
-  };
-  // OpenVDB winds its faces clockwise seen from the larger values: turned about here.
-  for (const auto& t : triangles) add(t[2], t[1], t[0]);
-  for (const auto& q : quads) {
-    if ((points[q[0]] - points[q[2]]).lengthSqr() <= (points[q[1]] - points[q[3]]).lengthSqr()) {
-      add(q[2], q[1], q[0]);
-      add(q[3], q[2], q[0]);
-    } else {
-      add(q[1], q[0], q[3]);
-      add(q[3], q[2], q[1]);
-    }
-  }
-  return mesh;
+TriangleMesh iso_surface(openvdb::FloatGrid::Ptr&& grid, double iso_mm) {
+  openvdb::tools::VolumeToMesh mesher(just_below(*grid, iso_mm), 0.0);
+  mesher(*grid);
+  grid.reset();
+  return triangles_of(mesher);
 }
 
 }  // namespace skinframe

@@ -19,5 +19,7 @@ openvdb::FloatGrid::Ptr distance_grid(const TriangleMesh& mesh, double voxel_mm,
 // values), coordinates exact floats. Closed where the grid's bands hold the surface, but single edges may
 // have four triangles: mend_edges() is for those. No adaptivity: OpenVDB's adaptive meshes cut themselves.
 TriangleMesh iso_surface(const openvdb::FloatGrid& grid, double iso_mm);
+// The same; the grid is gone before the triangles take memory.
+TriangleMesh iso_surface(openvdb::FloatGrid::Ptr&& grid, double iso_mm);
 
 }  // namespace skinframe

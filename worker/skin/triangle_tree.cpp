@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/skin/triangle_tree.h"
 
+#include <cmath>
 #include <limits>
 
 #include "worker/skin/box_tree.h"
@@ -106,6 +107,20 @@ Eigen::Vector3d TriangleTree::nearest(const Eigen::Vector3d& p) const {
 }
 
 double TriangleTree::distance_mm(const Eigen::Vector3d& p) const { return (p - nearest(p)).norm(); }
+
+bool TriangleTree::is_within(const Eigen::Vector3d& p, double most) const {
+  if (!(most >= 0.0)) return false;
+  constexpr double kRounding = 1e-12;  // of a square and its root: what is let through is looked at exactly
+  double limit = std::nextafter(most * most * (1.0 + kRounding), std::numeric_limits<double>::infinity());
+  bool found = false;
+  impl_->tree.approach(p, limit, [&](int item) {
+    const Eigen::Vector3d at = nearest_on_triangle(p, impl_->triangles[item]);
+    if (found || std::sqrt((at - p).squaredNorm()) > most) return;
+    found = true;
+    limit = 0.0;  // nothing is nearer: the search ends
+  });
+  return found;
+}
 
 bool TriangleTree::is_inside(const Eigen::Vector3d& p) const {
   const Eigen::Vector3d direction(0.3567, 0.7193, 0.5961);  // along no axis and no likely facet

@@ -19,6 +19,8 @@ class TriangleTree {
 
   Eigen::Vector3d nearest(const Eigen::Vector3d& point_mm) const;
   double distance_mm(const Eigen::Vector3d& point_mm) const;
+  // distance_mm(point) <= most_mm, without looking for the nearest.
+  bool is_within(const Eigen::Vector3d& point_mm, double most_mm) const;
   // By the crossings of a ray, each with its sign: shells that overlap count as one.
   bool is_inside(const Eigen::Vector3d& point_mm) const;
   // Length of the ray until it first leaves through a triangle from behind; most_mm where it does not before

@@ -50,9 +50,11 @@ TriangleMesh boundary_of(const openvdb::FloatGrid& grid) {
 
 }  // namespace
 
-TriangleMesh level_set_union(const std::vector<LevelSetBody>& bodies, double voxel) {
+TriangleMesh level_set_union(const std::vector<LevelSetBody>& bodies, double voxel,
+                             const RunContext& context) {
   openvdb::FloatGrid::Ptr united;
   for (const LevelSetBody& body : bodies) {
+    if (context.cancelled()) return {};
     openvdb::FloatGrid::Ptr grid = distance_of(body.outer, voxel);
     for (const TriangleMesh& cavity : body.cavities)
       openvdb::tools::csgDifference(*grid, *distance_of(cavity, voxel));

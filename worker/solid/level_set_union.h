@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "worker/mesh/triangle_mesh.h"
+#include "worker/run/run_context.h"
 
 namespace skinframe {
 
@@ -16,7 +17,9 @@ struct LevelSetBody {
 
 // The boundary of the union. Edges are rounded by about half a voxel; parts thinner than a voxel may vanish.
 // Closed and oriented; an edge may have four triangles where the surface touches itself.
-TriangleMesh level_set_union(const std::vector<LevelSetBody>& bodies, double voxel);
+// What it returns after a cancellation is of no use.
+TriangleMesh level_set_union(const std::vector<LevelSetBody>& bodies, double voxel,
+                             const RunContext& context);
 
 // The volume that the surface shuts off from outside. Error of second order in the voxel where the surface is
 // smooth.

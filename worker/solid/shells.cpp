@@ -27,18 +27,39 @@ void drop_shells(TriangleMesh& mesh, const std::vector<Shell>& shells, const std
   drop_unused_vertices(mesh);
 }
 
+// A sum of angles, each within (-pi, pi], as the argument of a product: an arc tangent an angle would take
+// longest.
+class AngleSum {
+ public:
+  // The angle of the complex number x + i y, not 0.
+  void add(double x, double y) {
+    const double re = re_ * x - im_ * y, im = re_ * y + im_ * x;
+    const bool both_up = im_ >= 0 && y >= 0, both_down = im_ < 0 && y < 0;
+    if (both_up && (im < 0 || (im == 0 && re_ < 0 && x < 0))) ++turns_;
+    if (both_down && im >= 0) --turns_;
+    const double size = std::abs(re) + std::abs(im);
+    re_ = re / size;
+    im_ = im / size;
+  }
+  double total() const { return 2 * std::numbers::pi * turns_ + std::atan2(im_, re_); }
+
+ private:
+  double re_ = 1, im_ = 0;
+  int turns_ = 0;
+};
+
 // Sum of the solid angles of the shell's triangles over 4 pi (Van Oosterom and Strackee 1983).
 bool encloses(const TriangleMesh& mesh, const Shell& shell, const Eigen::Vector3d& point) {
-  double half_angles = 0;
+  AngleSum half_angles;
   for (const int t : shell.triangles) {
     const Eigen::Vector3d a = mesh.vertices[mesh.triangles[t][0]] - point;
     const Eigen::Vector3d b = mesh.vertices[mesh.triangles[t][1]] - point;
     const Eigen::Vector3d c = mesh.vertices[mesh.triangles[t][2]] - point;
     const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    half_angles +=
-        std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+    const double x = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb, y = a.dot(b.cross(c));
+    if (std::abs(x) + std::abs(y) > 0) half_angles.add(x, y);  // else the point is one of the corners
   }
-  return std::abs(half_angles) > std::numbers::pi;  // half of the full 2 pi
+  return std::abs(half_angles.total()) > std::numbers::pi;  // half of the full 2 pi
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "worker/mesh/append.h"
 #include "worker/solid/exact_union.h"
 #include "worker/solid/half_edges.h"
 #include "worker/solid/level_set_union.h"
@@ -47,12 +48,6 @@ TriangleMesh part_of(const TriangleMesh& mesh, const std::vector<int>& triangles
     part.triangles.push_back(own);
   }
   return part;
-}
-
-void append(TriangleMesh& mesh, const TriangleMesh& more) {
-  const int shift = static_cast<int>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
-  for (const auto& [a, b, c] : more.triangles) mesh.triangles.push_back({a + shift, b + shift, c + shift});
 }
 
 // Shells that cross, by the numbers of the shells; a cavity goes with the body around it.
@@ -185,7 +180,7 @@ United unite(const TriangleMesh& mesh, const std::vector<Shell>& shells, const C
     }
   }
   const double voxel = level_set_voxel(area, box.extent().norm());
-  return {level_set_union(bodies, voxel), voxel};
+  return {level_set_union(bodies, voxel, context), voxel};
 }
 
 std::string self_crossing(std::size_t pairs) {

@@ -91,10 +91,4 @@ TriangleMesh support_mesh(const Frame& frame, const SupportPlan& plan, SupportKi
   return mesh;
 }
 
-void append(TriangleMesh& mesh, const TriangleMesh& other) {
-  const int first = static_cast<int>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& t : other.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-}
-
 }  // namespace skinframe

@@ -24,7 +24,4 @@ inline constexpr int kSides = 12;
 TriangleMesh support_mesh(const Frame& frame, const SupportPlan& plan, SupportKind kind,
                           const PrintedBody& body, const Neck& neck);
 
-// Appends a mesh to another one.
-void append(TriangleMesh& mesh, const TriangleMesh& other);
-
 }  // namespace skinframe

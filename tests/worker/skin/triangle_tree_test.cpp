@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -61,6 +62,20 @@ TEST(TriangleTree, NearestIsTheNearestOfAllTriangles) {
     for (int t = 0; t < 500; ++t)
       least = std::min(least, (nearest_on_triangle(p, corners(mesh, t)) - p).norm());
     EXPECT_EQ(tree.distance_mm(p), least);
+  }
+}
+
+TEST(TriangleTree, WithinIsTrueFromTheDistanceOnAndFalseBelowIt) {
+  const TriangleMesh mesh = scattered(500);
+  const TriangleTree tree(mesh);
+  Random random;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d p = random.point(15);
+    const double distance = tree.distance_mm(p);
+    EXPECT_TRUE(tree.is_within(p, distance));
+    EXPECT_TRUE(tree.is_within(p, 2.0 * distance));
+    EXPECT_FALSE(tree.is_within(p, std::nextafter(distance, 0.0)));
+    EXPECT_FALSE(tree.is_within(p, 0.5 * distance));
   }
 }
 

@@ -82,6 +82,16 @@ TEST(Unite, LevelSetsAgreeWithTheExactUnion) {
   EXPECT_THAT(by_level_set.repairs, ElementsAre(HasSubstr("in a level set of")));
 }
 
+TEST(Unite, HundredsOfBodiesInALevelSetAreOne) {
+  // Too many for the exact union: one bar, and 300 through it.
+  TriangleMesh bars = box({0, 0, 0}, {1200, 10, 10});
+  for (int i = 0; i < 300; ++i) bars = merged(bars, box({4.0 * i, -5, 2}, {4.0 * i + 2, 15, 8}));
+  const Union united = unite(bars, true);
+  ASSERT_TRUE(united.changed);
+  EXPECT_NEAR(signed_volume(united.mesh) / (1200 * 100 + 300 * 2 * 6 * 10), 1, 0.01);
+  EXPECT_THAT(united.repairs, ElementsAre(HasSubstr("united 301 shells")));
+}
+
 TEST(Unite, ASurfaceThatRunsThroughItselfIsUnitedWithItself) {
   const TriangleMesh spindle = torus(10, 15, 120, 60);
   ASSERT_GT(std::abs(signed_volume(spindle) / swept_volume(10, 15) - 1), 0.01);  // its core counts wrongly
