@@ -10,67 +10,21 @@
 #include <limits>
 #include <unordered_map>
 
+#include "worker/stress/graded_lattice.h"
+
 namespace skinframe {
 namespace {
 
-// Cuts nearer to an end than this share of the edge pull that end onto the surface; table 1 of the paper.
-constexpr double kPullLong = 0.24999, kPullShort = 0.41189;
 constexpr int kBisections = 10;
 constexpr double kLeastVolume = 1e-4;  // of a lattice tetrahedron's
 
 constexpr int kPrismTurns[6][6] = {{0, 1, 2, 3, 4, 5}, {1, 2, 0, 4, 5, 3}, {2, 0, 1, 5, 3, 4},
                                    {3, 5, 4, 0, 2, 1}, {4, 3, 5, 1, 0, 2}, {5, 4, 3, 2, 1, 0}};
 
-// Corners of the cubes first, their centres after.
-class Lattice {
- public:
-  Lattice(const BoundingBox& box, double spacing) : spacing_(spacing) {
-    cells_ = (box.extent() / spacing).array().ceil().cast<int>() + 2;
-    origin_ = 0.5 * (box.min + box.max) - 0.5 * spacing * cells_.cast<double>();
-    corners_ = cells_.array() + 1;
-    centre_base_ = corners_.x() * corners_.y() * corners_.z();
-  }
-  int corner(int x, int y, int z) const { return x + corners_.x() * (y + corners_.y() * z); }
-  int centre(int x, int y, int z) const { return centre_base_ + x + cells_.x() * (y + cells_.y() * z); }
-  bool is_centre(int i) const { return i >= centre_base_; }
-  int size() const { return centre_base_ + cells_.x() * cells_.y() * cells_.z(); }
-  Eigen::Vector3d point(int i) const {
-    const Eigen::Vector3i n = is_centre(i) ? cells_ : corners_;
-    const double shift = is_centre(i) ? 0.5 : 0.0;
-    if (is_centre(i)) i -= centre_base_;
-    const Eigen::Vector3d p(i % n.x(), (i / n.x()) % n.y(), i / (n.x() * n.y()));
-    return origin_ + spacing_ * (p.array() + shift).matrix();
-  }
-  // visit(tet): two centres on either side of a face, and an edge of that face; positive volume.
-  template <class Visit>
-  void for_each_tet(Visit visit) const {
-    for (int z = 0; z < cells_.z(); ++z)
-      for (int y = 0; y < cells_.y(); ++y)
-        for (int x = 0; x < cells_.x(); ++x)
-          for (int axis = 0; axis < 3; ++axis) {
-            const Eigen::Vector3i p(x, y, z), next = p + Eigen::Vector3i::Unit(axis);
-            if (next[axis] == cells_[axis]) continue;
-            const Eigen::Vector3i u = Eigen::Vector3i::Unit((axis + 1) % 3),
-                                  v = Eigen::Vector3i::Unit((axis + 2) % 3);
-            const Eigen::Vector3i ring[4] = {next, next + u, next + u + v, next + v};
-            for (int k = 0; k < 4; ++k) {
-              const Eigen::Vector3i &a = ring[k], &b = ring[(k + 1) % 4];
-              visit(std::array<int, 4>{centre(x, y, z), corner(a.x(), a.y(), a.z()),
-                                       corner(b.x(), b.y(), b.z()), centre(next.x(), next.y(), next.z())});
-            }
-          }
-  }
-
- private:
-  double spacing_;
-  Eigen::Vector3d origin_;
-  Eigen::Vector3i cells_, corners_;
-  int centre_base_ = 0;
-};
-
+template <class Grid>
 class Stuffing {
  public:
-  Stuffing(const std::function<double(const Eigen::Vector3d&)>& level, const Lattice& lattice)
+  Stuffing(const std::function<double(const Eigen::Vector3d&)>& level, const Grid& lattice)
       : level_(level), lattice_(lattice), value_(lattice.size()), place_(lattice.size(), -1) {}
 
   Result<TetMesh> fill(const RunContext& context) {
@@ -136,8 +90,7 @@ class Stuffing {
         if (value_[a] == 0.0 || value_[b] == 0.0) continue;  // the other end was pulled before
         const Eigen::Vector3d& cut = cuts_.at(key(a, b)).point;
         const double distance = (cut - from).norm();
-        const double limit = lattice_.is_centre(a) == lattice_.is_centre(b) ? kPullLong : kPullShort;
-        too_near = too_near || distance < limit * (lattice_.point(a) - lattice_.point(b)).norm();
+        too_near = too_near || distance < lattice_.pull_mm(point, a, b);
         if (distance >= nearest) continue;
         nearest = distance;
         to = cut;
@@ -218,7 +171,7 @@ class Stuffing {
   }
 
   const std::function<double(const Eigen::Vector3d&)>& level_;
-  const Lattice& lattice_;
+  const Grid& lattice_;
   std::vector<double> value_;
   std::vector<int> place_;
   std::unordered_map<std::uint64_t, Cut> cuts_;
@@ -227,32 +180,60 @@ class Stuffing {
   TetMesh mesh_;
 };
 
+double lattice_cells(const BoundingBox& box, double spacing_mm) {
+  return (box.extent().array() / spacing_mm + 3.0).prod();  // two cells of margin on every axis
+}
+
+Status check_spacing(const BoundingBox& box, double spacing_mm, double most_cells) {
+  const double least = least_spacing_mm(box, most_cells);
+  if (spacing_mm >= least && std::isfinite(spacing_mm)) return ok_status();
+  return invalid_input(fmt::format(
+      "a lattice of {:.3g} mm has too many cells in the body's box: {:.3g} mm at least", spacing_mm, least));
+}
+
+template <class LeastVolume>
+Result<TetMesh> without_slivers(Result<TetMesh> mesh, LeastVolume least_mm3) {
+  if (mesh)
+    std::erase_if(mesh.value().tets, [&](const auto& tet) {
+      return tet_volume_mm3(mesh.value(), tet) < least_mm3(mesh.value(), tet);
+    });
+  return mesh;
+}
+
 }  // namespace
 
-double least_spacing_mm(const BoundingBox& box) {
-  // Two cells of margin on every axis.
-  double spacing = std::cbrt(std::max(box.extent().prod(), 0.0) / kMaxLatticeCells);
-  const auto cells = [&](double s) { return (box.extent().array() / s + 3.0).prod(); };
+double least_spacing_mm(const BoundingBox& box, double most_cells) {
+  double spacing = std::cbrt(std::max(box.extent().prod(), 0.0) / most_cells);
   spacing = std::max(spacing, 1e-6);
-  while (cells(spacing) > kMaxLatticeCells) spacing *= 1.1;
+  while (lattice_cells(box, spacing) > most_cells) spacing *= 1.1;
   return spacing;
 }
 
 Result<TetMesh> fill_with_tetrahedra(const std::function<double(const Eigen::Vector3d&)>& level,
                                      const BoundingBox& box, double spacing_mm, const RunContext& context) {
-  const double least = least_spacing_mm(box);
-  if (!(spacing_mm >= least) || !std::isfinite(spacing_mm)) {
-    return invalid_input(
-        fmt::format("a lattice of {:.3g} mm has too many cells in the body's box: {:.3g} mm at least",
-                    spacing_mm, least));
-  }
+  const Status checked = check_spacing(box, spacing_mm, kMaxLatticeCells);
+  if (!checked) return checked.error();
   const Lattice lattice(box, spacing_mm);
-  auto mesh = Stuffing(level, lattice).fill(context);
-  if (!mesh) return mesh;
   const double least_volume = kLeastVolume * spacing_mm * spacing_mm * spacing_mm / kTetsACell;
-  std::erase_if(mesh.value().tets,
-                [&](const auto& tet) { return tet_volume_mm3(mesh.value(), tet) < least_volume; });
-  return mesh;
+  return without_slivers(Stuffing(level, lattice).fill(context),
+                         [&](const TetMesh&, const std::array<int, 4>&) { return least_volume; });
+}
+
+Result<TetMesh> fill_with_graded_tetrahedra(const std::function<double(const Eigen::Vector3d&)>& level,
+                                            const BoundingBox& box, double spacing_mm,
+                                            const SpacingAt& finer_mm, const RunContext& context) {
+  const Status checked = check_spacing(box, spacing_mm, kMostGradedCells);
+  if (!checked) return checked.error();
+  const GradedLattice lattice(Lattice(box, spacing_mm), level, finer_mm);
+  if (context.cancelled()) return cancelled_error();
+  return without_slivers(Stuffing(level, lattice).fill(context), [](const TetMesh& mesh,
+                                                                    const std::array<int, 4>& tet) {
+    double longest2 = 0;
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < i; ++j)
+        longest2 = std::max(longest2, (mesh.vertices_mm[tet[i]] - mesh.vertices_mm[tet[j]]).squaredNorm());
+    return kLeastVolume * longest2 * std::sqrt(longest2) / kTetsACell;
+  });
 }
 
 }  // namespace skinframe

@@ -28,20 +28,8 @@ struct QuadraticMesh {
   std::vector<std::array<int, 6>> surface;  // corners, then the middles of sides 01, 12, 20
 };
 
-std::vector<std::array<int, 4>> largest_part(const TetMesh& mesh) {
-  const auto part = face_components(mesh);
-  std::map<int, double> volume;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) volume[part[t]] += tet_volume_mm3(mesh, mesh.tets[t]);
-  const auto largest = std::max_element(volume.begin(), volume.end(),
-                                        [](const auto& a, const auto& b) { return a.second < b.second; });
-  std::vector<std::array<int, 4>> kept;
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
-    if (part[t] == largest->first) kept.push_back(mesh.tets[t]);
-  return kept;
-}
-
-QuadraticMesh with_middles(TetMesh mesh) {
-  mesh.tets = largest_part(mesh);
+QuadraticMesh with_middles(const TetMesh& linear) {
+  const TetMesh mesh = largest_component(linear);
   QuadraticMesh out;
   std::vector<int> renamed(mesh.vertices_mm.size(), -1);
   const auto corner = [&](int v) {

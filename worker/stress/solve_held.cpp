@@ -11,7 +11,7 @@ Result<Eigen::MatrixXd> solve_held(std::vector<Eigen::Triplet<double>> entries, 
                                    const RunContext& context) {
   Eigen::SparseMatrix<double> stiffness(f.rows(), f.rows());
   stiffness.setFromTriplets(entries.begin(), entries.end());
-  entries = {};
+  std::vector<Eigen::Triplet<double>>().swap(entries);  // = {} would keep the memory, beside the factor's
   if (context.cancelled()) return cancelled_error();
   Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver;
   solver.cholmod().print = 0;

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <utility>
 
 namespace skinframe {
 namespace {
@@ -80,6 +81,20 @@ std::vector<int> face_components(const TetMesh& mesh) {
     component[i] = n;
   }
   return component;
+}
+
+TetMesh largest_component(TetMesh mesh) {
+  if (mesh.tets.empty()) return mesh;
+  const auto component = face_components(mesh);
+  std::vector<double> volume(*std::max_element(component.begin(), component.end()) + 1, 0.0);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    volume[component[t]] += tet_volume_mm3(mesh, mesh.tets[t]);
+  const auto largest = std::max_element(volume.begin(), volume.end()) - volume.begin();
+  std::vector<std::array<int, 4>> kept;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    if (component[t] == largest) kept.push_back(mesh.tets[t]);
+  mesh.tets = std::move(kept);
+  return mesh;
 }
 
 }  // namespace skinframe

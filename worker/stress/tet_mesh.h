@@ -23,4 +23,7 @@ std::vector<std::array<int, 3>> boundary_of(const TetMesh& mesh);
 // through faces: what meets in an edge or a corner alone is a hinge, not one solid.
 std::vector<int> face_components(const TetMesh& mesh);
 
+// The tetrahedra of the component with the largest volume; vertices stay.
+TetMesh largest_component(TetMesh mesh);
+
 }  // namespace skinframe

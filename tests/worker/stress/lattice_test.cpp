@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <map>
 #include <numbers>
 
@@ -43,11 +44,9 @@ TEST(Lattice, BallIsFilledToItsSurfaceByTetrahedraWithoutSlivers) {
   EXPECT_GT(least_dihedral_degrees(*mesh), 8.0);
 }
 
-TEST(Lattice, EveryInnerFaceHasTwoTetrahedraAndTheBoundaryIsClosed) {
-  const auto mesh = fill_with_tetrahedra(ring, cube(17), 1.9, RunContext{});
-  ASSERT_TRUE(mesh.ok());
+void expect_closed_and_filled(const TetMesh& mesh) {
   std::map<std::pair<int, int>, int> directed;
-  for (const auto& face : boundary_of(*mesh))
+  for (const auto& face : boundary_of(mesh))
     for (int k = 0; k < 3; ++k) ++directed[{face[k], face[(k + 1) % 3]}];
   for (const auto& [edge, count] : directed) {
     const auto twin = directed.find({edge.second, edge.first});
@@ -56,10 +55,48 @@ TEST(Lattice, EveryInnerFaceHasTwoTetrahedraAndTheBoundaryIsClosed) {
   }
   // Outward: the boundary encloses what the tetrahedra fill.
   double enclosed = 0.0;
-  for (const auto& f : boundary_of(*mesh))
-    enclosed += mesh->vertices_mm[f[0]].cross(mesh->vertices_mm[f[1]]).dot(mesh->vertices_mm[f[2]]) / 6.0;
-  EXPECT_NEAR(enclosed, volume_mm3(*mesh), 1e-9 * enclosed);
-  for (const int c : face_components(*mesh)) EXPECT_EQ(c, 0);
+  for (const auto& f : boundary_of(mesh))
+    enclosed += mesh.vertices_mm[f[0]].cross(mesh.vertices_mm[f[1]]).dot(mesh.vertices_mm[f[2]]) / 6.0;
+  EXPECT_NEAR(enclosed, volume_mm3(mesh), 1e-9 * enclosed);
+  for (const int c : face_components(mesh)) EXPECT_EQ(c, 0);
+}
+
+TEST(Lattice, EveryInnerFaceHasTwoTetrahedraAndTheBoundaryIsClosed) {
+  const auto mesh = fill_with_tetrahedra(ring, cube(17), 1.9, RunContext{});
+  ASSERT_TRUE(mesh.ok());
+  expect_closed_and_filled(*mesh);
+}
+
+TEST(Lattice, GradedItIsFineWhereAskedAndStillClosedWithoutSlivers) {
+  const Eigen::Vector3d fine_at(0, 0, -10);
+  const auto asked = [&](const Eigen::Vector3d& p) { return 0.4 + 0.5 * (p - fine_at).norm(); };
+  const auto mesh = fill_with_graded_tetrahedra(ball, cube(10), 4, asked, RunContext{});
+  ASSERT_TRUE(mesh.ok()) << mesh.error().message;
+  expect_closed_and_filled(*mesh);
+  EXPECT_GT(least_dihedral_degrees(*mesh), 3.0);
+  const auto plain = fill_with_tetrahedra(ball, cube(10), 4, RunContext{});
+  EXPECT_LT(mesh->tets.size(), 12 * plain->tets.size());
+  int near = 0;
+  for (const auto& tet : mesh->tets) {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const int v : tet) middle += mesh->vertices_mm[v] / 4;
+    double longest = 0;
+    for (const int a : tet)
+      for (const int b : tet)
+        longest = std::max(longest, (mesh->vertices_mm[a] - mesh->vertices_mm[b]).norm());
+    EXPECT_LT(longest, 1.8 * asked(middle));  // points are pulled
+    near += (middle - fine_at).norm() < 1;
+  }
+  EXPECT_GT(near, 30);
+}
+
+TEST(Lattice, GradedLikeTheLatticeItselfWhereNothingFinerIsAsked) {
+  const auto plain = fill_with_tetrahedra(ring, cube(17), 2.4, RunContext{});
+  const auto graded = fill_with_graded_tetrahedra(
+      ring, cube(17), 2.4, [](const auto&) { return 2.41; }, RunContext{});
+  ASSERT_TRUE(plain.ok() && graded.ok());
+  EXPECT_NEAR(volume_mm3(*graded) / volume_mm3(*plain), 1, 0.003);
+  EXPECT_NEAR(static_cast<double>(graded->tets.size()) / static_cast<double>(plain->tets.size()), 1, 0.2);
 }
 
 TEST(Lattice, TwoBallsAreTwoComponents) {
@@ -76,6 +113,10 @@ TEST(Lattice, TooManyCellsAreRefusedBeforeMemoryIsTaken) {
   const auto refused = fill_with_tetrahedra(ball, cube(1e4), 0.01, RunContext{});
   ASSERT_FALSE(refused.ok());
   EXPECT_EQ(refused.error().kind, ErrorKind::kInvalidInput);
+  const auto as_fine = [](const auto&) { return 0.01; };
+  EXPECT_FALSE(fill_with_graded_tetrahedra(ball, cube(10), 0.9 * least_spacing_mm(cube(10), kMostGradedCells),
+                                           as_fine, RunContext{})
+                   .ok());
   EXPECT_TRUE(fill_with_tetrahedra(ball, cube(10), least_spacing_mm(cube(10)) * 3, RunContext{}).ok());
 }
 
