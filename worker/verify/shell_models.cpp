@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/verify/shell_models.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "worker/mechanics/evaluation.h"
+#include "worker/solid/contact.h"
 
 namespace skinframe {
 namespace {
@@ -18,14 +22,10 @@ Structure bare(const FrameProblem& problem, const Skin& skin, const FineSkin& fi
     s.nodes_mm.push_back(nodes[i] + (skin.thickness_mm - wall_mm[i] / 2) * fine.normals[i]);
   for (const auto& t : fine.frame.skin_triangles)
     s.shells.push_back({t, (wall_mm[t[0]] + wall_mm[t[1]] + wall_mm[t[2]]) / 3});
-  std::vector<char> stuck(nodes.size(), 0);
-  const std::size_t coarse = nodes.size() - fine.parents.size();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    if (i < coarse)
-      stuck[i] = problem.fixed[i][2];
-    else
-      stuck[i] = stuck[fine.parents[i - coarse][0]] && stuck[fine.parents[i - coarse][1]];
-    s.held.push_back(stuck[i] ? HeldFreedoms{true, true, true, false, false, false} : kFree);
+    const bool own = i < static_cast<std::size_t>(problem.frame.skin_node_count);
+    const bool stuck = fine.in_contact[i] || (own && problem.fixed[i][2]);
+    s.held.push_back(stuck ? HeldFreedoms{true, true, true, false, false, false} : kFree);
   }
   return s;
 }
@@ -45,6 +45,18 @@ void add_skin_strut(const FineSkin& fine, const std::vector<int>& chain, double 
 }
 
 }  // namespace
+
+std::optional<double> contact_height_mm(const FrameProblem& problem) {
+  std::optional<double> height;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < problem.frame.skin_node_count; ++i) {
+    const double z = problem.frame.nodes_mm[i].z();
+    lowest = std::min(lowest, z);
+    if (problem.fixed[i][2]) height = std::max(height.value_or(z), z);
+  }
+  if (height) height = std::max(*height, lowest + kContactToleranceMm);
+  return height;
+}
 
 Structure skin_alone_structure(const FrameProblem& problem, const Skin& skin, const FineSkin& fine) {
   return bare(problem, skin, fine, std::vector<double>(fine.frame.nodes_mm.size(), skin.thickness_mm));

@@ -2,12 +2,15 @@
 // Structures of the valid model on one and the same fine skin: the skin-frame, the skin alone, and the body
 // hollowed uniformly.
 //
-// Supports: the contact nodes, and fine nodes halfway between two of them, are held in x, y and z. (The
-// paper's model holds as little as it can in the plane; here one point would carry a whole side load, so the
-// contact counts as stuck to the plate.) Half the thickness below M lies the mid-surface; skin struts are the
-// half discs below M1, internal struts count in full, in two parts, so that they can buckle by themselves.
+// Supports: the skin in the contact is held in x, y and z, that is all up to its highest contact node, and
+// what lies within kContactToleranceMm of its lowest. (The paper's model holds single nodes, and as little as
+// it can in the plane; here one point would carry a whole side load, and give way the more the finer the mesh
+// is, so the contact counts as stuck to the plate.) Half the thickness below M lies the mid-surface; skin
+// struts are the half discs below M1, internal struts count in full, in two parts, so that they can buckle by
+// themselves.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "worker/mechanics/frame_problem.h"
@@ -18,6 +21,9 @@ namespace skinframe {
 
 // One nu for all polymers of the tables: their shear modulus would imply a negative one.
 inline constexpr double kPoissonRatio = 0.35;
+
+// Where the contact ends; none where the problem holds nothing of the skin.
+std::optional<double> contact_height_mm(const FrameProblem& problem);
 
 // radii_mm: one a strut of problem.frame; thinner ones than kVanishedRadiusMm are absent. Nodes: those of the
 // fine skin, the frame's internal ones, the middles of internal struts.

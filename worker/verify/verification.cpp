@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace skinframe {
 namespace {
@@ -18,6 +19,20 @@ Winner winner_of(Figure ours, Figure hollow, bool more_is_better) {
 }
 
 }  // namespace
+
+double mesh_error_of(const std::vector<std::vector<double>>& works, const std::vector<double>& least_work) {
+  const std::vector<double>&last = works[works.size() - 1], &coarser = works[works.size() - 2];
+  double worst = 0;
+  for (std::size_t c = 0; c < last.size(); ++c) {
+    const double change = last[c] - coarser[c];
+    double ratio = 2;
+    if (works.size() > 2 && change != 0)
+      ratio = std::clamp((coarser[c] - works[works.size() - 3][c]) / change, 2.0, 4.0);
+    worst =
+        std::max(worst, std::abs(change) / (ratio - 1) / std::max({std::abs(last[c]), least_work[c], 1e-30}));
+  }
+  return worst;
+}
 
 std::string mesh_words(const Verification& v) {
   if (v.mesh_error <= kMeshTolerance)

@@ -67,7 +67,7 @@ struct Verification {
   double balance_force = 0, balance_moment = 0;  // of reactions against loads, relative
   int levels = 0;                                // divisions of the skin triangulation
   std::size_t nodes = 0, triangles = 0;
-  double mesh_error = 0;  // relative change of the loads' work from the mesh one level coarser: an estimate
+  double mesh_error = 0;  // of the loads' work, relative: mesh_error_of
   std::string verdict;    // who wins, in words
   // Of the thread, by stage: mesh (its divisions, each assembled and factorised), pinch sites, skin-frame,
   // skin alone, hollow, solid.
@@ -88,8 +88,15 @@ inline constexpr double kEvenShare = 0.01;
 std::vector<ComparedRow> compare(const Verification& verification);
 const char* to_string(Winner winner);  // "skin-frame", "hollow", "even"
 
-// The mesh's error estimate against kMeshTolerance, in words: says so where it does not hold.
 inline constexpr double kMeshTolerance = 0.05;
+// An estimate of the relative error of the last mesh, the largest of all loads; works: one row a mesh, each
+// of half the spacing of the one before, two or more. Richardson's: the last change over ratio - 1, where the
+// ratio of the last two changes is taken as it is between 2 and 4 (order one to two), and as 2 below and
+// where there are two meshes only or the changes differ in sign, so that the last change itself counts.
+// Relative to the load's work, or to least_work where that is more: one a load, of what moves so little that
+// nobody asks by how much.
+double mesh_error_of(const std::vector<std::vector<double>>& works, const std::vector<double>& least_work);
+// The estimate against kMeshTolerance, in words: says so where it does not hold.
 std::string mesh_words(const Verification& verification);
 
 // In words, of compare(): says so where hollow wins or draws every row.

@@ -27,7 +27,7 @@ struct FineModel {
 
 Result<FineModel> model_at(const VerifyInput& in, int levels, const RunContext& context) {
   FineModel model;
-  model.skin = refine_skin(in.problem.frame, in.skin, levels);
+  model.skin = refine_skin(in.problem.frame, in.skin, levels, contact_height_mm(in.problem));
   auto cases = in.place_loads(model.skin.frame);
   if (!cases) return cases.error();
   model.cases = std::move(cases).value();
@@ -59,26 +59,37 @@ class CpuLaps {
   double last_;
 };
 
-double largest_change(const std::vector<double>& before, const std::vector<double>& after) {
-  double worst = 0;
-  for (std::size_t c = 0; c < after.size(); ++c)
-    worst = std::max(worst, std::abs(after[c] - before[c]) / std::max(std::abs(after[c]), 1e-30));
-  return worst;
+double vertical_n(const Eigen::VectorXd& column) {
+  double sum = 0;
+  for (Eigen::Index i = 2; i < column.size(); i += 6) sum += std::abs(column[i]);
+  return sum;
+}
+
+// Of each load if all it acts on moved by the displacement limit.
+std::vector<double> works_at_limit(const FineModel& model, double limit_mm) {
+  std::vector<double> works;
+  for (const LoadCase& load_case : model.cases) {
+    double size = 0;
+    for (const Eigen::Vector3d& f : load_case.force_n) size += f.norm();
+    if (!(size > 0)) size = vertical_n(load_column(*model.structure, load_case));
+    works.push_back(size * limit_mm);
+  }
+  return works;
 }
 
 // The mesh that is fine enough, and how well.
 Result<FineModel> refine(const VerifyInput& in, Verification* out, const RunContext& context) {
-  int level = fine_node_count(in.problem.frame, 2) <= kMostFineNodes ? 1 : 0;
-  std::vector<double> before;
-  for (;; ++level) {
+  std::vector<std::vector<double>> works;
+  for (int level = 0;; ++level) {
     auto model = model_at(in, level, context);
     if (!model) return model.error();
-    std::vector<double> works = load_works(*model->solver, model->cases);
+    works.push_back(load_works(*model->solver, model->cases));
     out->levels = level;
-    const bool last = fine_node_count(in.problem.frame, level + 1) > kMostFineNodes && level > 0;
-    if (!before.empty()) out->mesh_error = largest_change(before, works);
-    if (!before.empty() && (last || out->mesh_error < kMeshTolerance)) return model;
-    before = std::move(works);
+    if (level == 0) continue;
+    const bool last = fine_node_count(in.problem.frame, level + 1) > kMostFineNodes;
+    out->mesh_error =
+        mesh_error_of(works, works_at_limit(*model, in.problem.displacement_limit_mm.value_or(0)));
+    if (last || out->mesh_error < kMeshTolerance) return model;
   }
 }
 
@@ -133,6 +144,7 @@ Result<Verification> verify(const VerifyInput& in, const RunContext& context) {
     out.deformations.push_back(std::move(deformation));
   }
 
+  model.value().solver.reset();  // its factor is as large as each of those to come
   laps.lap("skin-frame");
   auto alone = assess(skin_alone_structure(in.problem, in.skin, model->skin), model->skin, model->cases,
                       pinches, context);

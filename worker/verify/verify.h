@@ -2,10 +2,11 @@
 // Verifies a result by the valid model (shell_models.h) and compares it with what a user would ask for: a
 // uniform hollow of the same printed mass on the same mesh, the skin alone, and the solid.
 //
-// The skin triangulation is divided until the work of each load changes by less than kMeshTolerance from one
-// level to the next, or until the next level would have more than kMostFineNodes nodes; the last change is
-// reported, and told in words where it is larger (mesh_words). Parts of the body that are thinner than two
-// skins are solid in print and not in the model: their stiffness is left out. So are supports of the print.
+// The skin triangulation is divided until the work of each load is known to kMeshTolerance by mesh_error_of
+// (of what moves less than the displacement limit, to that share of the limit), or until the next level would
+// have more than kMostFineNodes nodes; that estimate is reported, and told in words where it is larger
+// (mesh_words). Parts of the body that are thinner than two skins are solid in print and not in the model:
+// their stiffness is left out. So are supports of the print.
 #pragma once
 
 #include <functional>

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "worker/verify/coloured_skin.h"
 
 namespace skinframe {
@@ -65,6 +67,28 @@ TEST(Verification, WithoutAHollowNothingIsClaimedAboutIt) {
   v.hollow_missing = "it falls apart";
   EXPECT_THAT(verdict_of(v), HasSubstr("not compared"));
   for (const ComparedRow& row : compare(v)) EXPECT_EQ(row.winner, Winner::kNeither);
+}
+
+// w = 1 + a h^order on meshes of spacing 4, 2, 1: the limit is 1.
+TEST(Verification, ErrorOfTheFinestMeshIsThatOfItsOrderFromOneToTwo) {
+  const auto works = [](double a, double order) {
+    std::vector<std::vector<double>> w;
+    for (const double h : {4.0, 2.0, 1.0}) w.push_back({1 + a * std::pow(h, order)});
+    return w;
+  };
+  for (const double order : {1.0, 1.5, 2.0})
+    for (const double a : {0.01, -0.01})
+      EXPECT_NEAR(mesh_error_of(works(a, order), {0}), 0.01 / (1 + a), 1e-12);
+  // A lower order is not believed, nor a higher one.
+  EXPECT_NEAR(mesh_error_of({{1.3}, {1.2}, {1.1}}, {0}), 0.1 / 1.1, 1e-12);
+  EXPECT_NEAR(mesh_error_of({{3.0}, {1.03}, {1.0}}, {0}), 0.01, 1e-12);
+  // Two meshes, or changes to and fro: the last change.
+  EXPECT_NEAR(mesh_error_of({{1.2}, {1.0}}, {0}), 0.2, 1e-12);
+  EXPECT_NEAR(mesh_error_of({{0.5}, {1.2}, {1.0}}, {0}), 0.2, 1e-12);
+  // The worst load counts.
+  EXPECT_NEAR(mesh_error_of({{1.0, 1.0}, {1.0, 2.0}}, {0, 0}), 0.5, 1e-12);
+  // What moves less than anybody asks for counts by what they ask for.
+  EXPECT_NEAR(mesh_error_of({{1.2}, {1.0}}, {10}), 0.02, 1e-12);
 }
 
 TEST(Verification, AMeshThatIsTooCoarseIsToldSo) {

@@ -13,6 +13,7 @@
 #include "worker/skin/triangle_tree.h"
 #include "worker/verify/assess.h"
 #include "worker/verify/hollow.h"
+#include "worker/verify/relax_skin.h"
 #include "worker/verify/shell_models.h"
 
 namespace skinframe {
@@ -101,6 +102,85 @@ TEST_F(Ball, FineSkinStandsOnM1AndKeepsTheFramesNodesAndStruts) {
     if (!strut.is_skin) continue;
     EXPECT_EQ(fine.chains[j].front(), strut.a);
     EXPECT_EQ(fine.chains[j].back(), strut.b);
+  }
+}
+
+// Of each mesh: the cap of the sphere below the height, with angles as good as those of halved triangles.
+TEST_F(Ball, ContactEndsAtItsHeightWhateverTheMesh) {
+  const double height = contact_height_mm(problem_).value(), inner = kRadiusMm - 1;
+  EXPECT_NEAR(height, 3.9, 0.1);  // of the frame's highest node below 4 mm
+  const double cap = 2 * pi * inner * (height - 1);
+  for (const int levels : {0, 1, 2}) {
+    const FineSkin fine = refine_skin(problem_.frame, skin_, levels, height);
+    const auto& nodes = fine.frame.nodes_mm;
+    double held = 0;
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (fine.in_contact[i]) {
+        EXPECT_LT(nodes[i].z(), height + 0.02);
+      }
+    }
+    for (const auto& t : fine.frame.skin_triangles) {
+      const Vector3d a = nodes[t[1]] - nodes[t[0]], b = nodes[t[2]] - nodes[t[0]], c = b - a;
+      const double area = a.cross(b).norm() / 2;
+      EXPECT_GT(4 * std::sqrt(3.0) * area / (a.squaredNorm() + b.squaredNorm() + c.squaredNorm()), 0.3);
+      if (fine.in_contact[t[0]] && fine.in_contact[t[1]] && fine.in_contact[t[2]]) held += area;
+    }
+    EXPECT_NEAR(held / cap, 1, 0.04) << levels;
+    for (std::size_t j = 0; j < problem_.frame.struts.size(); ++j) {
+      const auto& chain = fine.chains[j];
+      for (std::size_t k = 0; k + 1 < chain.size(); ++k) {
+        const double share = (nodes[chain[k + 1]] - nodes[chain[k]]).norm() * (1 << levels) /
+                             problem_.frame.length_mm(problem_.frame.struts[j]);
+        EXPECT_LT(share, 1.5);  // no part of a strut leaves its neighbours' middles out
+      }
+    }
+  }
+}
+
+// As single nodes they would: there is no limit to how far a shell gives way below a point.
+TEST_F(Ball, SupportsDoNotGiveWayTheMoreTheFinerTheMeshIs) {
+  RunContext context;
+  std::vector<double> works;
+  for (const int levels : {1, 2, 3}) {
+    const FineSkin fine = refine_skin(problem_.frame, skin_, levels, contact_height_mm(problem_));
+    const Structure s = skin_frame_structure(problem_, radii_, skin_, fine);
+    const auto solver = StructureSolver::factorise(s, context);
+    ASSERT_TRUE(solver.ok()) << solver.error().message;
+    works.push_back(load_works(*solver, {{"self-weight", true, {}}}).at(0));
+  }
+  EXPECT_NEAR(works[1] / works[2], 1, 0.02);
+  EXPECT_NEAR(works[0] / works[2], 1, 0.06);
+}
+
+TEST_F(Ball, FoldsAreMendedOverM1) {
+  FineSkin fine = refine_skin(problem_.frame, skin_, 1);
+  Frame frame = fine.frame;
+  const int first = problem_.frame.skin_node_count;
+  for (int i = first; i < static_cast<int>(frame.nodes_mm.size()); i += 20) {
+    // Over its neighbours, or off the sphere.
+    const Vector3d out = frame.nodes_mm[i] - Vector3d(0, 0, kRadiusMm);
+    if (i % 40 < 20)
+      frame.nodes_mm[i] += 1.3 * kRadiusMm / 4 * out.unitOrthogonal();
+    else
+      frame.nodes_mm[i] -= 0.15 * out;
+  }
+  const auto least_cosine = [](const Frame& f) {
+    double least = 1;
+    for (const auto& t : f.skin_triangles) {
+      const Vector3d &a = f.nodes_mm[t[0]], &b = f.nodes_mm[t[1]], &c = f.nodes_mm[t[2]];
+      const Vector3d out = (a + b + c) / 3 - Vector3d(0, 0, kRadiusMm);
+      least = std::min(least, (b - a).cross(c - a).normalized().dot(out.normalized()));
+    }
+    return least;
+  };
+  ASSERT_LT(least_cosine(frame), -0.5);
+  relax_skin(skin_, first, &frame);
+  EXPECT_GT(least_cosine(frame), 0.8);
+  for (int i = 0; i < static_cast<int>(frame.nodes_mm.size()); ++i) {
+    EXPECT_NEAR((frame.nodes_mm[i] - Vector3d(0, 0, kRadiusMm)).norm(), kRadiusMm - 1, 0.2);
+    if (i < first) {
+      EXPECT_EQ(frame.nodes_mm[i], problem_.frame.nodes_mm[i]);
+    }
   }
 }
 
