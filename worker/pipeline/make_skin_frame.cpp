@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "worker/pipeline/earlier_frame.h"
+#include "worker/pipeline/finish_print.h"
 #include "worker/pipeline/fits_tray.h"
 #include "worker/pipeline/initial_frame.h"
 #include "worker/pipeline/make_solid.h"
@@ -14,9 +15,7 @@
 #include "worker/pipeline/sampling_checkpoint.h"
 #include "worker/pipeline/solve_and_merge.h"
 #include "worker/pipeline/support_print.h"
-#include "worker/pipeline/verify_result.h"
 #include "worker/pipeline/write_json.h"
-#include "worker/pipeline/write_results.h"
 #include "worker/problem/problem_file.h"
 #include "worker/problem/proof_json.h"
 #include "worker/problem/strut_sizes.h"
@@ -195,18 +194,10 @@ Result<PrinterReport> make_skin_frame(const PreparedSolid& prepared, SharedSkins
   if (auto written = write_json(folder / "initial-frame.json", initial); !written) return written.error();
   report.files.push_back("initial-frame.json");
   if (!merged.value()) return report;
-  if (auto written = write_printable(*merged.value(), prepared, request, folder, &report, context); !written)
-    return written.error();
-  if (report.supports) {
-    if (auto written = write_supports(result.problem.frame, *skin, request, folder, &report); !written)
-      return written.error();
-  }
-  laps.lap("write");
-  if (job.options.verify) {
-    if (auto verified = verify_result(prepared, *skin, job, folder, &report, context); !verified)
-      return verified.error();
-    laps.lap("verify");
-  }
+  if (auto finished =
+          finish_print(*merged.value(), prepared, *skin, request, job, folder, laps, &report, context);
+      !finished)
+    return finished.error();
   return report;
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "worker/mesh/append.h"
 #include "worker/mesh/write_stl.h"
 #include "worker/skin/triangle_tree.h"
 #include "worker/support/layers.h"

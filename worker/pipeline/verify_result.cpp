@@ -10,16 +10,15 @@
 
 namespace skinframe {
 
-Status verify_result(const PreparedSolid& prepared, const Skin& skin, const JobRequest& job,
-                     const std::filesystem::path& folder, PrinterReport* report, const RunContext& context) {
-  context.report({.stage = Stage::kVerify, .frame_volume_mm3 = report->statistics.frame_volume_mm3});
-  const OptimizeResult& result = *report->optimised;
+Result<Verification> verify_result(const PreparedSolid& prepared, const Skin& skin, const JobRequest& job,
+                                   const OptimizeResult& result, double printed_volume_mm3,
+                                   const RunContext& context) {
   VerifyInput input{.problem = result.problem,
                     .radii_mm = result.radii_mm,
                     .skin = skin,
                     .body = prepared.solid.mesh(),
                     .solid_volume_mm3 = prepared.solid.volume_mm3(),
-                    .printed_volume_mm3 = report->statistics.printed_volume_mm3,
+                    .printed_volume_mm3 = printed_volume_mm3,
                     .place_loads = {},
                     .loads = loads_at_points(job.loads, prepared.solid)};
   input.place_loads = [&](const Frame& frame) -> Result<std::vector<LoadCase>> {
@@ -27,7 +26,11 @@ Status verify_result(const PreparedSolid& prepared, const Skin& skin, const JobR
     if (!placed) return placed.error();
     return std::move(placed.value().cases);
   };
-  auto verified = verify(input, context);
+  return verify(input, context);
+}
+
+Status report_verification(Result<Verification> verified, const std::filesystem::path& folder,
+                           PrinterReport* report) {
   if (!verified) {
     if (verified.error().kind == ErrorKind::kCancelled) return verified.error();
     report->statistics.not_verified = verified.error().message;

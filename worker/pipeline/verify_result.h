@@ -9,10 +9,16 @@
 
 namespace skinframe {
 
-// Fills report.verification and writes a deformation-NAME.ply for each load case, and pinch.ply; where that
-// model has no answer, statistics.not_verified and a warning say why, and the job goes on. Errors: the disk,
+// By the valid model, of what has been merged; touches neither the disk nor the report. Errors: where that
+// model has no answer; kCancelled.
+Result<Verification> verify_result(const PreparedSolid& prepared, const Skin& skin, const JobRequest& job,
+                                   const OptimizeResult& result, double printed_volume_mm3,
+                                   const RunContext& context);
+
+// Fills report.verification and writes a deformation-NAME.ply for each load case, and pinch.ply; where the
+// model had no answer, statistics.not_verified and a warning say why, and the job goes on. Errors: the disk,
 // cancellation.
-Status verify_result(const PreparedSolid& prepared, const Skin& skin, const JobRequest& job,
-                     const std::filesystem::path& folder, PrinterReport* report, const RunContext& context);
+Status report_verification(Result<Verification> verified, const std::filesystem::path& folder,
+                           PrinterReport* report);
 
 }  // namespace skinframe

@@ -2,6 +2,11 @@
 #include "worker/pipeline/write_results.h"
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+
+#include <algorithm>
+#include <optional>
 
 #include "worker/export/compact_mesh.h"
 #include "worker/export/write_3mf.h"
@@ -20,24 +25,27 @@ ThreemfText text_of(const std::string& object, const PreparedSolid& prepared, co
                       100.0 * report.statistics.printed_ratio)};
 }
 
-Status write_compact(const MergedPrint& print, const PreparedSolid& prepared,
-                     const std::filesystem::path& folder, PrinterReport* report, const RunContext& context) {
+Result<CompactMesh> compact_of(const MergedPrint& print, const PreparedSolid& prepared,
+                               const PrinterReport& report, const RunContext& context) {
   CompactOptions options;
-  options.max_deviation_mm = kCompactDeviationInSkins * report->skin_thickness_mm;
-  auto compact = make_compact(print.closed, prepared.solid.mesh().triangles.size(), options, context);
-  if (!compact) return compact.error();
+  options.max_deviation_mm = kCompactDeviationInSkins * report.skin_thickness_mm;
+  return make_compact(print.closed, prepared.solid.mesh().triangles.size(), options, context);
+}
+
+Status write_compact(CompactMesh compact, const MergedPrint& print, const std::filesystem::path& folder,
+                     PrinterReport* report) {
   if (print.opened) {
-    OpenedMesh opened = open_holes(compact->mesh, compact->outer_triangles, print.opened->openings);
+    OpenedMesh opened = open_holes(compact.mesh, compact.outer_triangles, print.opened->openings);
     if (!opened.uncut.empty()) {
       report->warnings.push_back("no compact mesh is written: its drain holes could not be cut");
       return ok_status();
     }
-    compact.value().mesh = std::move(opened.mesh);
-    compact.value().volume_mm3 = opened.volume_mm3;
+    compact.mesh = std::move(opened.mesh);
+    compact.volume_mm3 = opened.volume_mm3;
   }
-  if (auto written = write_stl(compact->mesh, folder / "skin-frame-compact.stl"); !written) return written;
-  report->compact = {compact->mesh.triangles.size(), compact->volume_mm3, compact->deviation_mm,
-                     compact->crossings_left};
+  if (auto written = write_stl(compact.mesh, folder / "skin-frame-compact.stl"); !written) return written;
+  report->compact = {compact.mesh.triangles.size(), compact.volume_mm3, compact.deviation_mm,
+                     compact.crossings_left};
   report->files.push_back("skin-frame-compact.stl");
   return ok_status();
 }
@@ -94,6 +102,19 @@ Status write_holes(const MergedPrint& print, const PreparedSolid& prepared, cons
   return ok_status();
 }
 
+// The mesh in both formats, and the frame alone where there is one.
+Status write_full(const MergedPrint& print, const PreparedSolid& prepared,
+                  const std::filesystem::path& folder, const PrinterReport& report) {
+  if (auto written = write_stl(print.mesh(), folder / "skin-frame.stl"); !written) return written;
+  if (auto written =
+          write_3mf(print.mesh(), text_of("skin-frame", prepared, report), folder / "skin-frame.3mf");
+      !written)
+    return written;
+  if (!report.optimised) return ok_status();
+  return write_beams_3mf(report.optimised->problem.frame, report.optimised->radii_mm,
+                         text_of("frame", prepared, report), folder / "frame-beams.3mf");
+}
+
 }  // namespace
 
 Status write_printable(const MergedPrint& print, const PreparedSolid& prepared, const PrinterRequest& printer,
@@ -115,25 +136,25 @@ Status write_printable(const MergedPrint& print, const PreparedSolid& prepared, 
         "may avoid it",
         printable.crossings_left));
 
-  if (auto written = write_stl(print.mesh(), folder / "skin-frame.stl"); !written) return written;
-  if (auto written =
-          write_3mf(print.mesh(), text_of("skin-frame", prepared, *report), folder / "skin-frame.3mf");
-      !written)
-    return written;
+  // The compact mesh takes longest by far: the full one's files are written meanwhile.
+  std::optional<Status> full;
+  std::optional<Result<CompactMesh>> compact;
+  tbb::task_arena arena(std::max(1, context.threads));
+  arena.execute([&] {
+    tbb::task_group beside;
+    beside.run([&] { full = write_full(print, prepared, folder, *report); });
+    compact = compact_of(print, prepared, *report, context);
+    beside.wait();
+  });
+  if (!*full) return *full;
+  if (!*compact) return compact->error();
   report->files.insert(report->files.end(), {"skin-frame.stl", "skin-frame.3mf"});
-  if (context.cancelled()) return cancelled_error();
-  if (report->optimised) {
-    if (auto written = write_beams_3mf(report->optimised->problem.frame, report->optimised->radii_mm,
-                                       text_of("frame", prepared, *report), folder / "frame-beams.3mf");
-        !written)
-      return written;
-    report->files.push_back("frame-beams.3mf");
-  }
+  if (report->optimised) report->files.push_back("frame-beams.3mf");
   const auto rule = printer.printer.holes_to_make();
   if (rule && !report->is_solid) {
     if (auto written = write_holes(print, prepared, *rule, folder, report); !written) return written;
   }
-  return write_compact(print, prepared, folder, report, context);
+  return write_compact(std::move(*compact).value(), print, folder, report);
 }
 
 }  // namespace skinframe

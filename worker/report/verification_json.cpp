@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/report/verification_json.h"
 
+#include "worker/report/geometry_json.h"
 #include "worker/verify/pinch.h"
 
 namespace skinframe {
 namespace {
 
 using nlohmann::json;
-
-json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 json or_null(const std::optional<double>& figure) { return figure ? json(*figure) : json(nullptr); }
 
