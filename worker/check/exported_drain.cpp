@@ -6,14 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "worker/check/json_fields.h"
+
 namespace skinframe::check {
 namespace {
 
 constexpr double kOnWallMm = 2e-3;
-
-Eigen::Vector3d vector3(const nlohmann::json& value) {
-  return {value.at(0).get<double>(), value.at(1).get<double>(), value.at(2).get<double>()};
-}
 
 }  // namespace
 

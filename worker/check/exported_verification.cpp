@@ -10,6 +10,8 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "worker/check/json_fields.h"
+
 namespace skinframe::check {
 namespace {
 
@@ -18,16 +20,6 @@ using nlohmann::json;
 constexpr std::uintmax_t kMaxBytes = std::uintmax_t{1} << 28;
 constexpr std::size_t kMostPinchSites = 1000;
 constexpr std::size_t kPlacedBytes = 15, kFigureBytes = 4, kTriangleBytes = 13;
-
-std::optional<double> number(const json& object, const char* key) {
-  const auto it = object.find(key);
-  if (it == object.end() || it->is_null()) return std::nullopt;
-  return it->get<double>();
-}
-
-Eigen::Vector3d vector3(const json& item) {
-  return {item.at(0).get<double>(), item.at(1).get<double>(), item.at(2).get<double>()};
-}
 
 double float_at(const std::string& bytes, std::size_t at) {
   float v = 0;
@@ -87,7 +79,7 @@ std::optional<double> extreme(const json& design, const char* figure, bool large
   std::optional<double> out;
   if (design.is_null()) return out;
   for (const json& load : design.at("loads"))
-    if (const auto x = number(load, figure))
+    if (const auto x = optional_number(load, figure))
       out = !out ? *x : largest ? std::max(*out, *x) : std::min(*out, *x);
   return out;
 }
@@ -95,7 +87,7 @@ std::optional<double> extreme(const json& design, const char* figure, bool large
 std::vector<ExportedRow> rows_of_designs(const json& designs) {
   const json &ours = designs.at("skin_frame"), &hollow = designs.at("hollow");
   const auto own = [](const json& design, const char* figure) {
-    return design.is_null() ? std::nullopt : number(design, figure);
+    return design.is_null() ? std::nullopt : optional_number(design, figure);
   };
   return {{"max_displacement_mm", "", extreme(ours, "max_displacement_mm", true),
            extreme(hollow, "max_displacement_mm", true)},
@@ -118,13 +110,13 @@ ExportedVerification parse_verification(const json& item) {
   out.max_stress_mpa = item.at("max_stress_mpa").get<double>();
   out.balance_force = item.at("balance").at("force").get<double>();
   out.balance_moment = item.at("balance").at("moment").get<double>();
-  out.strength_mpa = number(item, "strength_mpa");
-  out.safety_factor = number(item, "safety_factor");
-  out.buckling_factor = number(item, "buckling_factor");
-  out.pinch_mean_mm = number(item, "pinch_mean_mm");
-  out.pinch_max_mm = number(item, "pinch_max_mm");
-  out.hollow_thickness_mm = number(item, "hollow_thickness_mm");
-  out.hollow_max_displacement_mm = number(item, "hollow_max_displacement_mm");
+  out.strength_mpa = optional_number(item, "strength_mpa");
+  out.safety_factor = optional_number(item, "safety_factor");
+  out.buckling_factor = optional_number(item, "buckling_factor");
+  out.pinch_mean_mm = optional_number(item, "pinch_mean_mm");
+  out.pinch_max_mm = optional_number(item, "pinch_max_mm");
+  out.hollow_thickness_mm = optional_number(item, "hollow_thickness_mm");
+  out.hollow_max_displacement_mm = optional_number(item, "hollow_max_displacement_mm");
   if (item.contains("pinch") && item.at("pinch").at("sites").size() > kMostPinchSites)
     throw std::out_of_range("verification.pinch.sites: too many");
   if (item.contains("pinch"))
@@ -134,10 +126,11 @@ ExportedVerification parse_verification(const json& item) {
   for (const json& load : item.at("loads"))
     out.loads.push_back({load.at("name").get<std::string>(), load.at("max_displacement_mm").get<double>(),
                          load.at("max_skin_stress_mpa").get<double>(),
-                         load.at("max_strut_stress_mpa").get<double>(), number(load, "buckling_factor")});
+                         load.at("max_strut_stress_mpa").get<double>(),
+                         optional_number(load, "buckling_factor")});
   for (const json& row : item.at("comparison").at("rows"))
     out.rows.push_back({row.at("figure").get<std::string>(), row.at("better").get<std::string>(),
-                        number(row, "skin_frame"), number(row, "hollow")});
+                        optional_number(row, "skin_frame"), optional_number(row, "hollow")});
   out.of_designs = rows_of_designs(item.at("comparison").at("designs"));
   out.verdict = item.at("comparison").at("verdict").get<std::string>();
   return out;

@@ -10,7 +10,9 @@
 #include <CGAL/Surface_mesh.h>
 
 #include <cmath>
+#include <iterator>
 #include <optional>
+#include <vector>
 
 namespace skinframe::check {
 namespace {
@@ -24,6 +26,22 @@ struct Surface::Impl {
   Mesh mesh;
   Tree tree;
   std::optional<CGAL::Side_of_triangle_mesh<Mesh, Kernel>> side;
+
+  // How often the surface winds around a point: ways out less ways in along a ray, in a direction that no
+  // file's edges have.
+  int winding(const Kernel::Point_3& p) const {
+    const Kernel::Vector_3 direction(0.5773, 0.3391, 0.7427);
+    std::vector<Primitive::Id> hit;
+    tree.all_intersected_primitives(Kernel::Ray_3(p, direction), std::back_inserter(hit));
+    int ways_out = 0;
+    for (const auto face : hit) {
+      const auto h = mesh.halfedge(face);
+      const auto &a = mesh.point(mesh.source(h)), &b = mesh.point(mesh.target(h)),
+                 &c = mesh.point(mesh.target(mesh.next(h)));
+      ways_out += CGAL::cross_product(b - a, c - a) * direction > 0 ? 1 : -1;
+    }
+    return ways_out;
+  }
 };
 
 Surface::Surface(const TriangleMesh& closed_mesh) : impl_(std::make_unique<Impl>()) {
@@ -53,8 +71,10 @@ Eigen::Vector3d Surface::nearest(const Eigen::Vector3d& p) const {
 
 double Surface::depth_mm(const Eigen::Vector3d& p) const {
   const double distance = distance_mm(p);
-  return (*impl_->side)(Kernel::Point_3(p.x(), p.y(), p.z())) == CGAL::ON_UNBOUNDED_SIDE ? -distance
-                                                                                         : distance;
+  const Kernel::Point_3 point(p.x(), p.y(), p.z());
+  // The library goes by odd and even; what a surface that crosses itself encloses twice is material as well.
+  const bool outside = (*impl_->side)(point) == CGAL::ON_UNBOUNDED_SIDE && impl_->winding(point) == 0;
+  return outside ? -distance : distance;
 }
 
 }  // namespace skinframe::check

@@ -16,7 +16,8 @@ class Surface {
   ~Surface();
   Surface(Surface&&) noexcept;
 
-  // Depth below the surface in mm: positive inside, negative outside.
+  // Depth below the surface in mm: positive inside, negative outside. Where the surface crosses itself and
+  // encloses a place twice, that is inside.
   double depth_mm(const Eigen::Vector3d& point_mm) const;
   Eigen::Vector3d nearest(const Eigen::Vector3d& point_mm) const;
   // Unsigned, and cheaper.

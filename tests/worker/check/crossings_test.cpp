@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 #include <set>
+#include <vector>
 
 #include "worker/check/claims.h"
 #include "worker/check/near_boxes.h"
+#include "worker/check/surface.h"
 
 namespace skinframe::check {
 namespace {
@@ -46,6 +49,34 @@ TEST(CountCrossings, NeighboursAndTouchingDoNotCountButAFoldDoes) {
   EXPECT_EQ(count_crossings(mesh, 0).added, 0u);
   mesh.triangles = {{0, 1, 2}, {1, 0, 5}};
   EXPECT_EQ(count_crossings(mesh, 0).added, 1u);
+}
+
+TEST(Surface, WhatItEnclosesTwiceIsInside) {
+  // Two cubes of 4 that share a corner's 2 x 2 x 2.
+  TriangleMesh mesh;
+  for (const double low : {0.0, 2.0})
+    for (int i = 0; i < 8; ++i)
+      mesh.vertices.emplace_back(low + (i & 1 ? 4 : 0), low + (i & 2 ? 4 : 0), low + (i & 4 ? 4 : 0));
+  for (const int k : {0, 8})
+    for (const auto& [a, b, c] : std::vector<std::array<int, 3>>{{0, 2, 1},
+                                                                 {1, 2, 3},
+                                                                 {4, 5, 6},
+                                                                 {5, 7, 6},
+                                                                 {0, 1, 4},
+                                                                 {1, 5, 4},
+                                                                 {2, 6, 3},
+                                                                 {3, 6, 7},
+                                                                 {0, 4, 2},
+                                                                 {2, 4, 6},
+                                                                 {1, 3, 5},
+                                                                 {3, 7, 5}})
+      mesh.triangles.push_back({k + a, k + b, k + c});
+  const Surface surface(mesh);
+  EXPECT_NEAR(surface.depth_mm({3, 3, 3}), 1, 1e-9);
+  EXPECT_NEAR(surface.depth_mm({1, 1.2, 1}), 1, 1e-9);
+  EXPECT_NEAR(surface.depth_mm({5.5, 5, 4}), 0.5, 1e-9);
+  EXPECT_NEAR(surface.depth_mm({1, 5, 1}), -1, 1e-9);
+  EXPECT_NEAR(surface.depth_mm({-2, 1, 1}), -2, 1e-9);
 }
 
 }  // namespace
