@@ -100,14 +100,15 @@ def section(name, printer, wins):
 def summary(results):
     lines = ["## Self-check and time", "",
              "Reactions against loads, relative (the largest over all load cases and pinches); CPU seconds of the "
-             "verification by stage, and how long it took on the clock beside whatever else ran.", ""]
+             "verification by stage, and for how long on the clock the job waited for it beyond the writing of its files, "
+             "which goes on at the same time.", ""]
     stages = []
     for printer in results.values():
         for stage in printer["verification"].get("cpu_seconds", {}):
             if stage not in stages:
                 stages.append(stage)
     stages.sort(key=["mesh", "pinch sites", "skin-frame", "skin alone", "hollow", "solid"].index)
-    lines += ["| model | forces | moments | " + " | ".join(stages) + " | all | without the solid | wall clock |",
+    lines += ["| model | forces | moments | " + " | ".join(stages) + " | all | without the solid | waited |",
               "|---|" + "--:|" * (len(stages) + 5)]
     for name, printer in results.items():
         v = printer["verification"]
@@ -157,9 +158,9 @@ def main():
             "Written by `tests/bench/truth/truth.py`, which runs the real programs; not edited by hand.", "",
             f"{datetime.date.today()}, {version.stdout.strip()}, {machine()}. Largest edge {asked.size:g} mm, "
             f"{PRINTER}, its default material; 20 N sideways at the top (x), 5 N down at the top, own weight in "
-            "either; a pinch of 10 N at up to 40 sites. Figures are those of shell and struts with rigid joints "
-            "(linear, nu 0.35), of a uniform hollow of the same printed mass on the same mesh, of quadratic tetrahedra "
-            "for the solid, and of the skin without its struts. The optimiser ran on the paper's model, with its "
+            "either, each design its own, the solid many times the others'; a pinch of 10 N at up to 40 sites. "
+            "Figures are those of shell and struts with rigid joints (linear, nu 0.35), of a uniform hollow of the same "
+            "printed mass on the same mesh, of quadratic tetrahedra for the solid, and of the skin without its struts. The optimiser ran on the paper's model, with its "
             "limit of 0.05 mm.", "", f"**Rows won at equal mass, all models together: {words}.**", ""]
     asked.out.write_text("\n".join(head + sections + summary(results)))
 
