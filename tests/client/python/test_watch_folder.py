@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """examples/watch_folder.py as a process, killed at any time, as is the server."""
+import re
 import shutil
 import subprocess
 import sys
@@ -61,7 +62,9 @@ class WatchFolder(FarmTest):
                         self.log())
         for name in names:
             self.assertTrue(self.result(name).exists())
-            self.assertRegex(self.log(), rf"{name}.stl: done: {PRINTER}: .* g, .* \(paper model\), .* mm \(verified\)")
+            # The file is moved first, then the line is written.
+            line = rf"{name}.stl: done: {PRINTER}: .* g, .* \(paper model\), .* mm \(verified\)"
+            self.assertTrue(eventually(lambda: re.search(line, self.log())), self.log())
         self.assertEqual(len(self.jobs()), 3)
         self.assertEqual([path for path in self.inbox.iterdir() if path.is_file()], [])
         self.assertEqual([path for path in self.outbox.iterdir() if path.name.startswith(".")], [])
