@@ -26,7 +26,8 @@ std::string list(const Vector3d& v) { return fmt::format("{:.9g},{:.9g},{:.9g}",
 // Nodes of the structure keep their numbers, from 1 on; those along sides and struts follow.
 class Deck {
  public:
-  explicit Deck(const Structure& s) : s_(s), next_(static_cast<int>(s.nodes_mm.size()) + 1) {
+  Deck(const Structure& s, Contraction contraction)
+      : s_(s), contraction_(contraction), next_(static_cast<int>(s.nodes_mm.size()) + 1) {
     for (std::size_t i = 0; i < s.nodes_mm.size(); ++i) {
       nodes_ += fmt::format("{},{}\n", i + 1, list(s.nodes_mm[i]));
       hold(static_cast<int>(i) + 1, s.held[i]);
@@ -80,12 +81,27 @@ class Deck {
     }
   }
 
+  void add_strut_material() {
+    const double e = s_.material.modulus_mpa, nu = s_.material.poisson_ratio, g = e / (2 * (1 + nu));
+    if (contraction_ == Contraction::kIsotropic)
+      elements_ += fmt::format("*MATERIAL,NAME=STRUT\n*ELASTIC\n{:.9g},{:.9g}\n", e, nu);
+    else
+      elements_ += fmt::format(
+          "*MATERIAL,NAME=STRUT\n*ELASTIC,TYPE=ENGINEERING CONSTANTS\n"
+          "{0:.9g},{0:.9g},{0:.9g},0,0,0,{1:.9g},{1:.9g}\n{1:.9g}\n",
+          e, g);
+  }
+
+  // Where a strut's beams end, in shares of its length.
+  std::vector<double> beam_ends(double length_mm, double radius_mm) const {
+    if (contraction_ == Contraction::kNone) return {0.5, 1};
+    const double last = std::min(radius_mm / length_mm, 0.25);
+    return {last, 0.5, 1 - last, 1};
+  }
+
   void add_struts() {
-    const double e = s_.material.modulus_mpa, g = e / (2 * (1 + s_.material.poisson_ratio));
-    elements_ += fmt::format(
-        "*MATERIAL,NAME=STRUT\n*ELASTIC,TYPE=ENGINEERING CONSTANTS\n"
-        "{0:.9g},{0:.9g},{0:.9g},0,0,0,{1:.9g},{1:.9g}\n{1:.9g}\n",
-        e, g);
+    if (s_.struts.empty()) return;
+    add_strut_material();
     for (std::size_t j = 0; j < s_.struts.size(); ++j) {
       const auto& [from, to] = s_.struts[j].nodes;
       const Vector3d &a = s_.nodes_mm[from], &b = s_.nodes_mm[to];
@@ -96,22 +112,26 @@ class Deck {
         elements_ += fmt::format("{},{},{},{}\n", element_++, from + 1, side->second, to + 1);
       } else {
         int last = from + 1;
-        for (int part = 0; part < kBeamsAStrut; ++part) {
-          const auto at = [&](double parts) { return Vector3d(a + parts / kBeamsAStrut * (b - a)); };
-          const int middle = add_node(at(part + 0.5));
-          const int end = part + 1 < kBeamsAStrut ? add_node(at(part + 1)) : to + 1;
+        double begun = 0;
+        for (const double ends : beam_ends((b - a).norm(), s_.struts[j].radius_mm)) {
+          const int middle = add_node(a + (begun + ends) / 2 * (b - a));
+          const int end = ends < 1 ? add_node(a + ends * (b - a)) : to + 1;
           elements_ += fmt::format("{},{},{},{}\n", element_++, last, middle, end);
           last = end;
+          begun = ends;
         }
       }
+      const bool turned = contraction_ == Contraction::kNone;
+      if (turned)
+        elements_ += fmt::format("*ORIENTATION,NAME=O{}\n{},{}\n", j + 1, list(along), list(across));
       elements_ += fmt::format(
-          "*ORIENTATION,NAME=O{0}\n{1},{2}\n"
-          "*BEAM SECTION,ELSET=S{0},MATERIAL=STRUT,ORIENTATION=O{0},SECTION=PIPE\n{3:.9g},{3:.9g}\n{2}\n",
-          j + 1, list(along), list(across), s_.struts[j].radius_mm);
+          "*BEAM SECTION,ELSET=S{0},MATERIAL=STRUT,{1}SECTION=PIPE\n{2:.9g},{2:.9g}\n{3}\n", j + 1,
+          turned ? fmt::format("ORIENTATION=O{},", j + 1) : "", s_.struts[j].radius_mm, list(across));
     }
   }
 
   const Structure& s_;
+  const Contraction contraction_;
   int next_, element_ = 1;
   std::map<Edge, int> middles_;  // of shells' sides
   std::string nodes_, elements_, held_;
@@ -139,9 +159,9 @@ Eigen::MatrixXd displacements_in(const std::filesystem::path& path, std::size_t 
 
 }  // namespace
 
-Eigen::MatrixXd ask_calculix(const Structure& structure, const NodalColumns& loads) {
+Eigen::MatrixXd ask_calculix(const Structure& structure, const NodalColumns& loads, Contraction contraction) {
   const TemporaryFolder folder;
-  folder.write("model.inp", Deck(structure).write(loads));
+  folder.write("model.inp", Deck(structure, contraction).write(loads));
   const std::string command = fmt::format("cd {} && OMP_NUM_THREADS=1 {} model > model.log 2>&1",
                                           folder.path().string(), SKINFRAME_CCX);
   if (std::system(command.c_str()) != 0) {
