@@ -10,13 +10,13 @@
 namespace skinframe::check {
 namespace {
 
-constexpr double kDeepestInSkins = 1.25;  // of a finger, which presses on the middle of the skin
-constexpr double kFloat = 1e-5;           // relative: the file holds floats
-constexpr double kSame = 1e-9;            // relative: of figures in the same file
-constexpr double kTieMm = 1e-3;           // of two fingers equally near
-constexpr double kBalanced = 1e-8;        // of reactions against what acts
-constexpr double kEven = 0.01;            // relative: rows nearer than that are draws
-constexpr double kHollowVolume = 0.02;    // relative: the wall is found by sampling, beside the error here
+constexpr double kDeepestInSkins = 1;   // of a finger, which presses on the middle of the skin
+constexpr double kFloat = 1e-5;         // relative: the file holds floats
+constexpr double kSame = 1e-9;          // relative: of figures in the same file
+constexpr double kTieMm = 1e-3;         // of two fingers equally near
+constexpr double kBalanced = 1e-8;      // of reactions against what acts
+constexpr double kEven = 0.01;          // relative: rows nearer than that are draws
+constexpr double kHollowVolume = 0.02;  // relative: the wall is found by sampling, beside the error here
 
 bool close(double a, double b, double relative) {
   return std::abs(a - b) <= relative * std::max({std::abs(a), std::abs(b), 1e-12});

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The check says no to figures of the valid model, and to comparisons, that their files do not have.
+#include <Eigen/Core>
 #include <cstring>
 #include <fstream>
 
@@ -51,6 +52,46 @@ TEST_F(CheckTest, AFalseSafetyFactorAndAnUnbalancedAnswerAreSeen) {
   EXPECT_THAT(
       denied_report([](json& p) { p["verification"]["pinch"]["sites"][0]["fingers_mm"][1][2] = 500; }),
       Names("pinch (verified)"));
+}
+
+// All pinches told alike, so that the map cannot tell which finger stands where.
+void tell_pinches_alike(const fs::path& copy, json& verification) {
+  constexpr float kClosing = 0.5F;
+  constexpr std::size_t kVertexBytes = 19, kClosingAt = 15;  // three floats and a colour before it
+  for (json& site : verification["pinch"]["sites"]) site["closing_mm"] = kClosing;
+  verification["pinch_mean_mm"] = kClosing;
+  verification["pinch_max_mm"] = kClosing;
+  const fs::path file = copy / kPrinter / "pinch.ply";
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  const std::string count = "element vertex ", end = "end_header\n";
+  const std::size_t first = bytes.find(end) + end.size();
+  const std::size_t vertices = std::stoul(bytes.substr(bytes.find(count) + count.size()));
+  for (std::size_t i = 0; i < vertices; ++i)
+    std::memcpy(&bytes[first + i * kVertexBytes + kClosingAt], &kClosing, sizeof kClosing);
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+// A finger presses on the middle of the skin, which is 1 mm thick: 0.7 mm further it is in the hollow.
+TEST_F(CheckTest, AFingerBelowTheSkinIsSeen) {
+  const auto with_finger_moved_by = [](double mm) {
+    return denied([mm](const fs::path& copy) {
+      json report = read_json(copy / "report.json");
+      json& verification = report["printers"][0]["verification"];
+      tell_pinches_alike(copy, verification);
+      json& fingers = verification["pinch"]["sites"][0]["fingers_mm"];
+      Eigen::Vector3d from, to;
+      for (int k = 0; k < 3; ++k) {
+        from[k] = fingers[0][k];
+        to[k] = fingers[1][k];
+      }
+      from += mm * (to - from).normalized();
+      fingers[0] = {from.x(), from.y(), from.z()};
+      write_json(copy / "report.json", report);
+    });
+  };
+  EXPECT_THAT(with_finger_moved_by(0), testing::Not(Names("pinch (verified)")));
+  EXPECT_THAT(with_finger_moved_by(0.7), Names("pinch (verified)"));
 }
 
 TEST_F(CheckTest, AComparisonThatNamesTheWrongWinnerIsSeen) {
