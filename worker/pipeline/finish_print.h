@@ -14,7 +14,7 @@ namespace skinframe {
 
 // Both begin at once, where the job has two threads for them: neither needs the other, and verification runs
 // on one thread alone. What comes of them is the same at any number of threads. Seconds: those of "verify"
-// are what it took beyond "write". Errors: the disk, cancellation.
+// are what it took beyond "write". Errors: the disk, which stops the verification; cancellation.
 Status finish_print(const MergedPrint& print, const PreparedSolid& prepared, const Skin& skin,
                     const PrinterRequest& printer, const JobRequest& job, const std::filesystem::path& folder,
                     Laps& laps, PrinterReport* report, const RunContext& context);

@@ -2,15 +2,13 @@
 #include "worker/pipeline/write_results.h"
 
 #include <fmt/format.h>
-#include <tbb/task_arena.h>
-#include <tbb/task_group.h>
 
-#include <algorithm>
 #include <optional>
 
 #include "worker/export/compact_mesh.h"
 #include "worker/export/write_3mf.h"
 #include "worker/mesh/write_stl.h"
+#include "worker/pipeline/side_by_side.h"
 
 namespace skinframe {
 namespace {
@@ -136,25 +134,26 @@ Status write_printable(const MergedPrint& print, const PreparedSolid& prepared, 
         "may avoid it",
         printable.crossings_left));
 
-  // The compact mesh takes longest by far: the full one's files are written meanwhile.
-  std::optional<Status> full;
-  std::optional<Result<CompactMesh>> compact;
-  tbb::task_arena arena(std::max(1, context.threads));
-  arena.execute([&] {
-    tbb::task_group beside;
-    beside.run([&] { full = write_full(print, prepared, folder, *report); });
-    compact = compact_of(print, prepared, *report, context);
-    beside.wait();
-  });
-  if (!*full) return *full;
-  if (!*compact) return compact->error();
+  // The compact mesh takes longest by far: the full one's files are written meanwhile, and tell first of a
+  // disk that fails.
+  std::optional<CompactMesh> compact;
+  const Status made =
+      side_by_side([&](const RunContext&) { return write_full(print, prepared, folder, *report); },
+                   [&](const RunContext& stopping) -> Status {
+                     auto thinned = compact_of(print, prepared, *report, stopping);
+                     if (!thinned) return thinned.error();
+                     compact = std::move(thinned).value();
+                     return ok_status();
+                   },
+                   context);
+  if (!made) return made;
   report->files.insert(report->files.end(), {"skin-frame.stl", "skin-frame.3mf"});
   if (report->optimised) report->files.push_back("frame-beams.3mf");
   const auto rule = printer.printer.holes_to_make();
   if (rule && !report->is_solid) {
     if (auto written = write_holes(print, prepared, *rule, folder, report); !written) return written;
   }
-  return write_compact(std::move(*compact).value(), print, folder, report);
+  return write_compact(std::move(*compact), print, folder, report);
 }
 
 }  // namespace skinframe
