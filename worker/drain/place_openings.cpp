@@ -2,6 +2,8 @@
 #include "worker/drain/place_openings.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -143,12 +145,15 @@ class Placing {
   }
 
   std::vector<Candidate> candidates_of(double radius) const {
+    std::vector<std::optional<Candidate>> judged(sites_.size());
+    tbb::parallel_for(std::size_t{0}, sites_.size(),
+                      [&](std::size_t i) { judged[i] = judge(sites_[i], radius); });
     std::vector<Candidate> found;
-    for (std::size_t i = 0; i < sites_.size(); ++i)
-      if (auto candidate = judge(sites_[i], radius)) {
-        candidate->cost += kStressCost * stress_rank_[i];
-        found.push_back(*candidate);
-      }
+    for (std::size_t i = 0; i < sites_.size(); ++i) {
+      if (!judged[i]) continue;
+      found.push_back(*judged[i]);
+      found.back().cost += kStressCost * stress_rank_[i];
+    }
     std::stable_sort(found.begin(), found.end(),
                      [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
     return found;
@@ -294,7 +299,10 @@ PlacedOpenings place_openings(const TriangleMesh& mesh, const Skin& skin, const 
                               const std::vector<KeepAway>& keep_away, const std::vector<Opening>& refused,
                               const RunContext& context) {
   SKINFRAME_CHECK(rule.diameter_mm > 0.0 && rule.least_diameter_mm > 0.0);
-  return Placing(mesh, skin, contact_hull, stress, cavities, keep_away, refused).place(rule, context);
+  tbb::task_arena arena(std::max(1, context.threads));
+  return arena.execute([&] {
+    return Placing(mesh, skin, contact_hull, stress, cavities, keep_away, refused).place(rule, context);
+  });
 }
 
 }  // namespace skinframe

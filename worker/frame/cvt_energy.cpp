@@ -79,8 +79,11 @@ double cvt_energy(const WeightedSamples& samples, const std::vector<Eigen::Vecto
   std::vector<int> owner(samples.points.size());
   tbb::task_arena arena(std::max(1, threads));
   arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, owner.size(),
-                      [&](std::size_t v) { owner[v] = tree.nearest(samples.points[v]); });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, owner.size(), 1024), [&](const auto& range) {
+      int near = 0;  // the sample before has it near
+      for (std::size_t v = range.begin(); v < range.end(); ++v)
+        near = owner[v] = tree.nearest_by_guess(samples.points[v], near);
+    });
   });
   // Added up in order: the same sum at any thread count.
   if (gradient != nullptr) gradient->assign(sites.size(), Eigen::Vector3d::Zero());

@@ -25,8 +25,11 @@ std::vector<int> assign(const std::vector<Eigen::Vector3d>& samples,
   std::vector<int> owner(samples.size());
   tbb::task_arena arena(std::max(1, threads));
   arena.execute([&] {
-    tbb::parallel_for(std::size_t{0}, samples.size(),
-                      [&](std::size_t i) { owner[i] = tree.nearest(samples[i]); });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, samples.size(), 1024), [&](const auto& range) {
+      int near = 0;  // the sample before has it near
+      for (std::size_t i = range.begin(); i < range.end(); ++i)
+        near = owner[i] = tree.nearest_by_guess(samples[i], near);
+    });
   });
   return owner;
 }
@@ -42,14 +45,16 @@ InnerRoom find_inner_room(const Skin& skin, double margin_mm) {
   const Eigen::Vector3i steps = (box.extent() / room.spacing_mm).array().floor().cast<int>();
   const Eigen::Vector3d corner = box.min + 0.5 * (box.extent() - room.spacing_mm * steps.cast<double>());
   const double deepest = -(skin.thickness_mm + margin_mm);
-  for (int z = 0; z <= steps.z(); ++z) {
+  std::vector<std::vector<Eigen::Vector3d>> layers(steps.z() + 1);
+  tbb::parallel_for(0, steps.z() + 1, [&](int z) {
     for (int y = 0; y <= steps.y(); ++y) {
       for (int x = 0; x <= steps.x(); ++x) {
         const Eigen::Vector3d p = corner + room.spacing_mm * Eigen::Vector3d(x, y, z);
-        if (skin.field.at(p) <= deepest) room.samples.push_back(p);
+        if (skin.field.at(p) <= deepest) layers[z].push_back(p);
       }
     }
-  }
+  });
+  for (const auto& layer : layers) room.samples.insert(room.samples.end(), layer.begin(), layer.end());
   return room;
 }
 

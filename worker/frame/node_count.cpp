@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/frame/node_count.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -14,6 +16,13 @@ namespace skinframe {
 namespace {
 
 using Vectors = std::vector<Eigen::Vector3d>;
+
+template <class Visit>
+void for_each_vertex(std::size_t count, const Visit& visit) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1024), [&](const auto& range) {
+    for (std::size_t v = range.begin(); v < range.end(); ++v) visit(v);
+  });
+}
 
 Vectors vertex_normals(const TriangleMesh& mesh) {
   Vectors normals(mesh.vertices.size(), Eigen::Vector3d::Zero());
@@ -41,7 +50,7 @@ template <class T>
 void diffuse(std::vector<T>& values, const VertexGraph& graph, const std::vector<double>& areas, int rounds) {
   std::vector<T> next(values.size());
   for (int round = 0; round < rounds; ++round) {
-    for (std::size_t v = 0; v < values.size(); ++v) {
+    for_each_vertex(values.size(), [&](std::size_t v) {
       T sum = areas[v] * values[v];
       double weight = areas[v];
       for (int i = graph.first[v]; i < graph.first[v + 1]; ++i) {
@@ -50,7 +59,7 @@ void diffuse(std::vector<T>& values, const VertexGraph& graph, const std::vector
         weight += areas[w];
       }
       next[v] = weight > 0.0 ? T(sum / weight) : values[v];
-    }
+    });
     values.swap(next);
   }
 }
@@ -77,14 +86,20 @@ double largest_curvature(int v, const TriangleMesh& mesh, const VertexGraph& gra
 void grade(std::vector<double>& length, const TriangleMesh& mesh, const VertexGraph& graph) {
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  for (std::size_t v = 0; v < length.size(); ++v) queue.emplace(length[v], static_cast<int>(v));
+  const auto reached_from = [&](int v, int w) {
+    return length[v] + kEdgeGrading * (mesh.vertices[w] - mesh.vertices[v]).norm();
+  };
+  for (int v = 0; v < static_cast<int>(length.size()); ++v)
+    if (std::any_of(graph.neighbour.begin() + graph.first[v], graph.neighbour.begin() + graph.first[v + 1],
+                    [&](int w) { return reached_from(v, w) < length[w]; }))
+      queue.emplace(length[v], v);
   while (!queue.empty()) {
     const auto [a, v] = queue.top();
     queue.pop();
     if (a > length[v]) continue;
     for (int i = graph.first[v]; i < graph.first[v + 1]; ++i) {
       const int w = graph.neighbour[i];
-      const double reached = a + kEdgeGrading * (mesh.vertices[w] - mesh.vertices[v]).norm();
+      const double reached = reached_from(v, w);
       if (reached < length[w]) queue.emplace(length[w] = reached, w);
     }
   }
@@ -113,12 +128,12 @@ std::vector<double> edge_length_field(const TriangleMesh& mesh, double finger_ed
   const double shortest = std::min(kEdgeFloorInThicknesses * h, finger_edge);
   // Node density, not length, is what averages without changing the count.
   std::vector<double> density(mesh.vertices.size());
-  for (std::size_t v = 0; v < density.size(); ++v) {
+  for_each_vertex(density.size(), [&](std::size_t v) {
     const double curvature = largest_curvature(static_cast<int>(v), mesh, graph, normals);
     const double chord_edge = std::sqrt(8.0 * h / std::max(curvature, 1e-12));
     const double a = std::clamp(chord_edge, shortest, finger_edge);
     density[v] = 1.0 / (a * a);
-  }
+  });
   diffuse(density, graph, areas, smoothing);
   std::vector<double> length(density.size());
   for (std::size_t v = 0; v < length.size(); ++v) length[v] = 1.0 / std::sqrt(density[v]);
@@ -130,11 +145,13 @@ void weigh_by_stress(const TriangleMesh& mesh, const StressMap& stress, double f
                      std::vector<double>& length) {
   const auto areas = vertex_areas(mesh);
   std::vector<double> logarithm(areas.size(), std::numeric_limits<double>::quiet_NaN());
+  for_each_vertex(areas.size(), [&](std::size_t v) {
+    const auto s = stress.von_mises_mpa_at(mesh.vertices[v]);
+    if (s && *s > 0.0) logarithm[v] = std::log(*s);
+  });
   double sum = 0.0, area = 0.0;
   for (std::size_t v = 0; v < areas.size(); ++v) {
-    const auto s = stress.von_mises_mpa_at(mesh.vertices[v]);
-    if (!s || !(*s > 0.0)) continue;
-    logarithm[v] = std::log(*s);
+    if (std::isnan(logarithm[v])) continue;
     sum += areas[v] * logarithm[v];
     area += areas[v];
   }

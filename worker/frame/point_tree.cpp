@@ -53,8 +53,12 @@ void PointTree::search(int begin, int end, const Eigen::Vector3d& query, const d
 }
 
 int PointTree::nearest(const Eigen::Vector3d& query) const {
-  int best = -1;
-  double bound = std::numeric_limits<double>::infinity();
+  return points_.empty() ? -1 : nearest_by_guess(query, 0);
+}
+
+int PointTree::nearest_by_guess(const Eigen::Vector3d& query, int guess) const {
+  int best = guess;
+  double bound = (points_[guess] - query).squaredNorm();
   auto visit = [&](int i, double d2) {
     if (d2 < bound || (d2 == bound && i < best)) {
       best = i;

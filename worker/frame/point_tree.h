@@ -16,6 +16,8 @@ class PointTree {
   const Eigen::Vector3d& point(int i) const { return points_[i]; }
 
   int nearest(const Eigen::Vector3d& query) const;  // -1 when there are no points
+  // The same, sooner where the point guessed is near. Of at least one point.
+  int nearest_by_guess(const Eigen::Vector3d& query, int guess) const;
   std::vector<int> nearest(const Eigen::Vector3d& query,
                            int count) const;  // nearest first; fewer when there are fewer
   std::vector<int> within(const Eigen::Vector3d& query, double radius) const;  // ascending index

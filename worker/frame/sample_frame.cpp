@@ -2,6 +2,7 @@
 #include "worker/frame/sample_frame.h"
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -45,50 +46,7 @@ void measure_chords(SampledFrame& sampled, const Skin& skin) {
   }
 }
 
-}  // namespace
-
-TriangleAngles measure_angles(const Frame& frame) {
-  if (frame.skin_triangles.empty()) return {};
-  std::vector<double> least;
-  for (const auto& t : frame.skin_triangles) {
-    double angle = 180.0;
-    for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector3d& p = frame.nodes_mm[t[k]];
-      const Eigen::Vector3d u = frame.nodes_mm[t[(k + 1) % 3]] - p, v = frame.nodes_mm[t[(k + 2) % 3]] - p;
-      angle = std::min(angle, std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi);
-    }
-    least.push_back(angle);
-  }
-  std::sort(least.begin(), least.end());
-  const double mean = std::accumulate(least.begin(), least.end(), 0.0) / static_cast<double>(least.size());
-  return {mean, least[least.size() / 100], least.front()};
-}
-
-Status FrameOptions::validate() const {
-  const auto outside = [](const char* name, double value, double low, double high) {
-    return invalid_input(
-        fmt::format("{} {:.6g}: must lie between {:.6g} and {:.6g}", name, value, low, high));
-  };
-  if (skin_nodes && (*skin_nodes < kMinSkinNodes || *skin_nodes > kMaxSkinNodes)) {
-    return outside("--skin-nodes", *skin_nodes, kMinSkinNodes, kMaxSkinNodes);
-  }
-  if (internal_nodes && (*internal_nodes < 0 || *internal_nodes > kMaxSkinNodes)) {
-    return outside("--internal-nodes", *internal_nodes, 0, kMaxSkinNodes);
-  }
-  if (neighbours < 1 || neighbours > 64) return outside("neighbours", neighbours, 1, 64);
-  if (!(plate.tensile_modulus_mpa > 0.0) || !(plate.displacement_limit_mm > 0.0) ||
-      !(plate.finger_force_n > 0.0) || !(plate.poisson_ratio >= 0.0 && plate.poisson_ratio < 0.5)) {
-    return invalid_input(
-        "the finger rule needs a modulus, a displacement limit and a force above 0 and a Poisson ratio "
-        "in [0, 0.5)");
-  }
-  if (!(strut_radius_mm > 0.0)) return invalid_input("the radius of the struts must be above 0");
-  if (!(contact_tolerance_mm > 0.0)) return invalid_input("the contact tolerance must be above 0");
-  return ok_status();
-}
-
-Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options, RunContext& context) {
-  if (auto status = options.validate(); !status) return status.error();
+Result<SampledFrame> sample(const Skin& skin, const FrameOptions& options, const RunContext& context) {
   if (skin.inner_surface.triangles.empty()) {
     return invalid_input(
         fmt::format("the body is thinner than two skins ({:.3g} mm) everywhere: there is no room for a "
@@ -148,6 +106,54 @@ Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options,
   sampled.angles = measure_angles(sampled.frame);
   if (context.cancelled()) return cancelled_error();
   return sampled;
+}
+
+}  // namespace
+
+TriangleAngles measure_angles(const Frame& frame) {
+  if (frame.skin_triangles.empty()) return {};
+  std::vector<double> least;
+  for (const auto& t : frame.skin_triangles) {
+    double angle = 180.0;
+    for (int k = 0; k < 3; ++k) {
+      const Eigen::Vector3d& p = frame.nodes_mm[t[k]];
+      const Eigen::Vector3d u = frame.nodes_mm[t[(k + 1) % 3]] - p, v = frame.nodes_mm[t[(k + 2) % 3]] - p;
+      angle = std::min(angle, std::atan2(u.cross(v).norm(), u.dot(v)) * 180.0 / std::numbers::pi);
+    }
+    least.push_back(angle);
+  }
+  std::sort(least.begin(), least.end());
+  const double mean = std::accumulate(least.begin(), least.end(), 0.0) / static_cast<double>(least.size());
+  return {mean, least[least.size() / 100], least.front()};
+}
+
+Status FrameOptions::validate() const {
+  const auto outside = [](const char* name, double value, double low, double high) {
+    return invalid_input(
+        fmt::format("{} {:.6g}: must lie between {:.6g} and {:.6g}", name, value, low, high));
+  };
+  if (skin_nodes && (*skin_nodes < kMinSkinNodes || *skin_nodes > kMaxSkinNodes)) {
+    return outside("--skin-nodes", *skin_nodes, kMinSkinNodes, kMaxSkinNodes);
+  }
+  if (internal_nodes && (*internal_nodes < 0 || *internal_nodes > kMaxSkinNodes)) {
+    return outside("--internal-nodes", *internal_nodes, 0, kMaxSkinNodes);
+  }
+  if (neighbours < 1 || neighbours > 64) return outside("neighbours", neighbours, 1, 64);
+  if (!(plate.tensile_modulus_mpa > 0.0) || !(plate.displacement_limit_mm > 0.0) ||
+      !(plate.finger_force_n > 0.0) || !(plate.poisson_ratio >= 0.0 && plate.poisson_ratio < 0.5)) {
+    return invalid_input(
+        "the finger rule needs a modulus, a displacement limit and a force above 0 and a Poisson ratio "
+        "in [0, 0.5)");
+  }
+  if (!(strut_radius_mm > 0.0)) return invalid_input("the radius of the struts must be above 0");
+  if (!(contact_tolerance_mm > 0.0)) return invalid_input("the contact tolerance must be above 0");
+  return ok_status();
+}
+
+Result<SampledFrame> sample_frame(const Skin& skin, const FrameOptions& options, RunContext& context) {
+  if (auto status = options.validate(); !status) return status.error();
+  tbb::task_arena arena(std::max(1, context.threads));
+  return arena.execute([&] { return sample(skin, options, context); });
 }
 
 }  // namespace skinframe

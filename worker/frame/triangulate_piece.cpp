@@ -7,11 +7,13 @@
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <new>
+#include <optional>
 
 #include "worker/frame/cvt_energy.h"
 #include "worker/frame/flips.h"
@@ -72,14 +74,14 @@ Eigen::Vector3d lloyd_step(const HalfEdgeMesh& mesh, const NodeTraitsMap& traits
 class Relaxation {
  public:
   Relaxation(const HalfEdgeMesh& surface, const std::vector<double>& edge_length, double contact_z,
-             std::vector<Eigen::Vector3d> pins, SharpChains& chains)
+             SharpChains& chains)
       : surface_(surface),
         chains_(chains),
         edge_length_(edge_length),
         contact_z_(contact_z),
-        rim_(rim_points(surface, contact_z)),
-        pins_(std::move(pins)) {
+        rim_(rim_points(surface, contact_z)) {
     tree_.insert(faces(surface).begin(), faces(surface).end(), surface);
+    tree_.build();
     tree_.accelerate_distance_queries();
     samples_.weights.assign(surface.number_of_vertices(), 0.0);
     for (auto v : surface.vertices()) samples_.points.push_back(to_eigen(surface.point(v)));
@@ -92,6 +94,9 @@ class Relaxation {
       for (const Vertex v : corners) samples_.weights[v] += area / (3.0 * std::pow(edge_length[v], 4));
     }
   }
+
+  // What stands for the rim where it is near.
+  void set_pins(std::vector<Eigen::Vector3d> pins) { pins_ = PointTree(std::move(pins)); }
 
   void round(HalfEdgeMesh& mesh, NodeTraitsMap traits, bool onto_rim) const {
     flip(mesh, traits);
@@ -167,7 +172,7 @@ class Relaxation {
   SharpChains& chains_;
   const std::vector<double>& edge_length_;
   double contact_z_;
-  PointTree rim_, pins_;
+  PointTree rim_, pins_{std::vector<Eigen::Vector3d>{}};
   WeightedSamples samples_;
   Tree tree_;
 };
@@ -238,12 +243,13 @@ Result<PieceTriangulation> triangulate_piece(const TriangleMesh& piece, const Pi
       for (std::size_t v = 0; v < piece.vertices.size(); ++v)
         if (chains.is_on(static_cast<int>(v)))
           traits[Vertex(static_cast<int>(v))].chain_vertex = static_cast<int>(v);
-    collapse_to_count(mesh, traits, chains, sampling.nodes);
-
-    // What stands for the rim where it is near: pins and sharp edges.
-    std::vector<Eigen::Vector3d> pins = chains.points_mm();
+    std::optional<Relaxation> made;
+    tbb::parallel_invoke([&] { collapse_to_count(mesh, traits, chains, sampling.nodes); },
+                         [&] { made.emplace(*surface, edge_length, sampling.contact_z_mm, chains); });
+    Relaxation& relaxation = *made;
+    std::vector<Eigen::Vector3d> pins = chains.points_mm();  // what is left of the sharp edges
     for (int pin : sampling.pins) pins.push_back(piece.vertices[pin]);
-    const Relaxation relaxation(*surface, edge_length, sampling.contact_z_mm, std::move(pins), chains);
+    relaxation.set_pins(std::move(pins));
     for (int round = 0; round < kEvenRounds + kRimRounds; ++round) {
       if (context.cancelled()) return cancelled_error();
       relaxation.round(mesh, traits, round >= kEvenRounds);
