@@ -60,13 +60,13 @@ openvdb::FloatGrid::Ptr larger(const openvdb::FloatGrid& a, openvdb::FloatGrid& 
   return result;
 }
 
-Smoothing smooth_detail(const TriangleMesh& mesh, const DistanceField& field, const SkinOptions& options,
-                        const RunContext& context) {
+// faired: M's copy.
+Smoothing smooth_detail(const TriangleMesh& mesh, const TriangleMesh& faired, const DistanceField& field,
+                        const SkinOptions& options, const RunContext& context) {
   Smoothing smoothing;
-  const FairedSurface faired = fair_surface(mesh, field, options.thickness_mm);
-  smoothing.detail = faired.detail;
-  const bool wanted = options.smooth == Smooth::kOn || faired.detail.share >= kLeastDetailShare;
-  if (!wanted || faired.mesh.triangles.empty() || context.cancelled()) return smoothing;
+  smoothing.detail = measure_detail(faired, field, options.thickness_mm);
+  const bool wanted = options.smooth == Smooth::kOn || smoothing.detail.share >= kLeastDetailShare;
+  if (!wanted || faired.triangles.empty() || context.cancelled()) return smoothing;
   smoothing.copy = keep_inside(faired, mesh, field, options.thickness_mm, context).mesh;
   smoothing.applied = true;
   return smoothing;
@@ -86,17 +86,22 @@ Result<Skin> build(const TriangleMesh& mesh, const SkinOptions& options, const R
   grids->outer_band_mm = kOuterVoxels * *voxel;
   // No point is deeper than half of the box's least edge.
   const double deepest = 0.5 * box.extent().minCoeff() / grids->coarse_voxel_mm + 2.0;
+  TriangleMesh faired;
   tbb::parallel_invoke(
       [&] { grids->fine = distance_grid(mesh, *voxel, kOuterVoxels, inner_voxels); },
-      [&] { grids->coarse = distance_grid(mesh, grids->coarse_voxel_mm, kOuterVoxels, deepest); });
+      [&] { grids->coarse = distance_grid(mesh, grids->coarse_voxel_mm, kOuterVoxels, deepest); },
+      [&] {
+        if (options.smooth != Smooth::kOff) faired = fair_surface(mesh, options.thickness_mm, *voxel);
+      });
   if (context.cancelled()) return cancelled_error();
   const DistanceField body_field(grids);
 
   Skin skin;
   double plain_cavity_mm3 = 0.0;
   if (options.smooth != Smooth::kOff) {
-    skin.smoothing = smooth_detail(mesh, body_field, options, context);
+    skin.smoothing = smooth_detail(mesh, faired, body_field, options, context);
     if (context.cancelled()) return cancelled_error();
+    faired = {};
   }
   if (skin.smoothing && skin.smoothing->applied) {
     const TriangleMesh& copy = skin.smoothing->copy;
@@ -113,29 +118,30 @@ Result<Skin> build(const TriangleMesh& mesh, const SkinOptions& options, const R
   skin.body_box_mm = box;
   const double volume = signed_volume(mesh);
   Eigen::Vector3d moment = volume * volume_centroid(mesh);
-  const TriangleMesh cavity = iso_surface(*grids->fine, -options.thickness_mm);
-  if (!cavity.triangles.empty()) {
-    skin.cavity_volume_mm3 = std::clamp(signed_volume(cavity), 0.0, volume);
-    if (skin.cavity_volume_mm3 > 0.0) moment -= skin.cavity_volume_mm3 * volume_centroid(cavity);
-  }
+  const DistanceField field(grids);
+  bool is_closed = false;
+  tbb::parallel_invoke(
+      [&] {
+        const TriangleMesh cavity = iso_surface(*grids->fine, -options.thickness_mm);
+        if (cavity.triangles.empty()) return;
+        skin.cavity_volume_mm3 = std::clamp(signed_volume(cavity), 0.0, volume);
+        if (skin.cavity_volume_mm3 > 0.0) moment -= skin.cavity_volume_mm3 * volume_centroid(cavity);
+      },
+      [&] {
+        skin.inner_surface = iso_surface(*grids->coarse, -options.thickness_mm);
+        is_closed = mend_edges(skin.inner_surface).manifold;
+        if (!skin.smoothing || !skin.smoothing->applied)
+          skin.sharp_edges = find_sharp_edges(mesh, field, options.thickness_mm);
+      },
+      [&] { skin.thin = find_thin_parts(mesh, body_field, options.thickness_mm, context); });
+  if (context.cancelled()) return cancelled_error();
+  if (!is_closed) return internal_error("the inner surface of the skin is not closed: try another --voxel");
+  skin.field = field;
   skin.volume_mm3 = volume - skin.cavity_volume_mm3;
   if (skin.smoothing && skin.smoothing->applied)
     skin.smoothing->added_skin_mm3 = std::max(0.0, plain_cavity_mm3 - skin.cavity_volume_mm3);
   if (skin.volume_mm3 > 0.0) skin.centroid_mm = moment / skin.volume_mm3;
-  if (context.cancelled()) return cancelled_error();
-
-  skin.inner_surface = iso_surface(*grids->coarse, -options.thickness_mm);
-  if (!mend_edges(skin.inner_surface).manifold) {
-    return internal_error("the inner surface of the skin is not closed: try another --voxel");
-  }
-  skin.field = DistanceField(std::move(grids));
-  if (!skin.smoothing || !skin.smoothing->applied)
-    skin.sharp_edges = find_sharp_edges(mesh, skin.field, options.thickness_mm);
-  if (skin.is_thin_everywhere())
-    skin.thin = {volume, 1.0, 0, {}};
-  else
-    skin.thin = find_thin_parts(mesh, body_field, options.thickness_mm, context);
-  if (context.cancelled()) return cancelled_error();
+  if (skin.is_thin_everywhere()) skin.thin = {volume, 1.0, 0, {}};
   return skin;
 }
 

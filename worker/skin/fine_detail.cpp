@@ -21,24 +21,6 @@ constexpr int kPairs = 30;        // of Taubin's steps at first
 constexpr int kRounds = 4;        // of pushing inside; between them
 constexpr int kPairsARound = 10;  // fairing again, which takes the kinks from what was pushed
 
-FineDetail measure(const TriangleMesh& mesh, const DistanceField& field, double height) {
-  std::vector<double> off(mesh.vertices.size());
-  tbb::parallel_for(std::size_t{0}, off.size(),
-                    [&](std::size_t v) { off[v] = std::abs(field.at(mesh.vertices[v])); });
-  double area = 0.0, above = 0.0, squares = 0.0;
-  for (const auto& t : mesh.triangles) {
-    const Eigen::Vector3d& a = mesh.vertices[t[0]];
-    const double third = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm() / 6.0;
-    for (const int v : t) {
-      area += third;
-      squares += third * off[v] * off[v];
-      if (off[v] > height) above += third;
-    }
-  }
-  if (!(area > 0.0)) return {};
-  return {above / area, std::sqrt(squares / area)};
-}
-
 class Inside {
  public:
   Inside(const TriangleMesh& body, const DistanceField& field, double margin)
@@ -81,17 +63,35 @@ int count_in_parallel(std::size_t size, const Visit& visit) {
 
 }  // namespace
 
-FairedSurface fair_surface(const TriangleMesh& closed_mesh, const DistanceField& field, double thickness_mm) {
-  const double voxel = std::max(kDetailVoxelInThicknesses * thickness_mm, field.voxel_mm());
-  FairedSurface faired{iso_surface(*distance_grid(closed_mesh, voxel, kBandVoxels, kBandVoxels), 0.0), {}};
-  fair_taubin(faired.mesh, kPairs);
-  faired.detail = measure(faired.mesh, field, kDetailHeightInThicknesses * thickness_mm);
+TriangleMesh fair_surface(const TriangleMesh& closed_mesh, double thickness_mm, double voxel_mm) {
+  const double voxel = std::max(kDetailVoxelInThicknesses * thickness_mm, voxel_mm);
+  TriangleMesh faired = iso_surface(distance_grid(closed_mesh, voxel, kBandVoxels, kBandVoxels), 0.0);
+  fair_taubin(faired, kPairs);
   return faired;
 }
 
-InnerCopy keep_inside(const FairedSurface& faired, const TriangleMesh& closed_mesh,
-                      const DistanceField& field, double thickness_mm, const RunContext& context) {
-  InnerCopy copy{faired.mesh, 0, 0};
+FineDetail measure_detail(const TriangleMesh& faired, const DistanceField& field, double thickness_mm) {
+  const double height = kDetailHeightInThicknesses * thickness_mm;
+  std::vector<double> off(faired.vertices.size());
+  tbb::parallel_for(std::size_t{0}, off.size(),
+                    [&](std::size_t v) { off[v] = std::abs(field.at(faired.vertices[v])); });
+  double area = 0.0, above = 0.0, squares = 0.0;
+  for (const auto& t : faired.triangles) {
+    const Eigen::Vector3d& a = faired.vertices[t[0]];
+    const double third = (faired.vertices[t[1]] - a).cross(faired.vertices[t[2]] - a).norm() / 6.0;
+    for (const int v : t) {
+      area += third;
+      squares += third * off[v] * off[v];
+      if (off[v] > height) above += third;
+    }
+  }
+  if (!(area > 0.0)) return {};
+  return {above / area, std::sqrt(squares / area)};
+}
+
+InnerCopy keep_inside(const TriangleMesh& faired, const TriangleMesh& closed_mesh, const DistanceField& field,
+                      double thickness_mm, const RunContext& context) {
+  InnerCopy copy{faired, 0, 0};
   const Inside inside(closed_mesh, field, kDetailMarginInThicknesses * thickness_mm);
   auto& corners = copy.mesh.vertices;
   for (int round = 0; round < kRounds && !context.cancelled(); ++round) {

@@ -34,13 +34,11 @@ struct FineDetail {
   double rms_mm = 0.0;  // of that distance over the whole surface
 };
 
-struct FairedSurface {
-  TriangleMesh mesh;
-  FineDetail detail;
-};
+// The faired copy of M as fairing leaves it, partly outside; its voxels are not finer than voxel_mm.
+TriangleMesh fair_surface(const TriangleMesh& closed_mesh, double thickness_mm, double voxel_mm);
 
-// The faired copy of M as fairing leaves it, partly outside. field: of M.
-FairedSurface fair_surface(const TriangleMesh& closed_mesh, const DistanceField& field, double thickness_mm);
+// What fairing took away: how far the faired copy stands from M. field: of M.
+FineDetail measure_detail(const TriangleMesh& faired, const DistanceField& field, double thickness_mm);
 
 struct InnerCopy {
   TriangleMesh mesh;     // closed, outward
@@ -49,7 +47,7 @@ struct InnerCopy {
 };
 
 // `faired` brought inside M. field: of M.
-InnerCopy keep_inside(const FairedSurface& faired, const TriangleMesh& closed_mesh,
-                      const DistanceField& field, double thickness_mm, const RunContext& context);
+InnerCopy keep_inside(const TriangleMesh& faired, const TriangleMesh& closed_mesh, const DistanceField& field,
+                      double thickness_mm, const RunContext& context);
 
 }  // namespace skinframe

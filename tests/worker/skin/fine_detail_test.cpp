@@ -78,14 +78,14 @@ TEST(FineDetail, OffIsNotLookedForAndChangesNothing) {
 TEST(FineDetail, TheCopyStaysInsideTheBody) {
   const TriangleMesh body = bumpy_sphere(9, 0.7, 3.0);
   const Skin off = skin_of(body, Smooth::kOff);
-  const FairedSurface faired = fair_surface(body, off.field, 1.0);
+  const TriangleMesh faired = fair_surface(body, 1.0, off.voxel_mm);
   const TriangleTree tree(body);
   const auto outside = [&](const TriangleMesh& mesh) {
     int count = 0;
     for (const auto& v : mesh.vertices) count += !tree.is_inside(v);
     return count;
   };
-  EXPECT_GT(outside(faired.mesh), 300);  // fairing alone does not
+  EXPECT_GT(outside(faired), 300);  // fairing alone does not
   const InnerCopy copy = keep_inside(faired, body, off.field, 1.0, RunContext{});
   EXPECT_EQ(outside(copy.mesh), 0);
   EXPECT_GT(signed_volume(copy.mesh), 0.9 * signed_volume(body));
