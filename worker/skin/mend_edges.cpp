@@ -2,6 +2,7 @@
 #include "worker/skin/mend_edges.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 #include <tbb/parallel_sort.h>
 
 #include <Eigen/Geometry>
@@ -18,75 +19,113 @@ namespace {
 
 constexpr int kMaxRounds = 12;
 constexpr double kNudge = 0.02;  // of the edge's length
+constexpr std::size_t kVerticesABlock = 4096;
 
-// One side of one triangle: the edge's ends in ascending order as a key, so that sorting brings edges
-// together.
+// One side of one triangle, beside others with the same lower end: eight bytes, since millions are sorted.
 struct Side {
-  std::uint64_t key;
-  int triangle;
-  bool forth;  // run from the lower to the higher end
+  std::uint32_t high;  // the upper end
+  std::uint32_t triangle : 31;
+  std::uint32_t forth : 1;  // run from the lower to the higher end
+};
+
+// One edge: its ends, and the sides that run along it.
+struct Edge {
+  int low, high;
+  const Side *first, *last;
 };
 
 // By the lower end, the upper end, the triangle: counted into place by the lower end, then sorted among few.
-std::vector<Side> sorted_sides(const TriangleMesh& mesh) {
-  const auto low_end = [](const std::array<int, 3>& t, int k) { return std::min(t[k], t[(k + 1) % 3]); };
-  std::vector<int> next(mesh.vertices.size() + 1, 0);
-  for (const auto& t : mesh.triangles)
-    for (int k = 0; k < 3; ++k) ++next[low_end(t, k) + 1];
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  const std::vector<int> first = next;
-  std::vector<Side> sides(3 * mesh.triangles.size());
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const auto a = static_cast<std::uint32_t>(mesh.triangles[t][k]);
-      const auto b = static_cast<std::uint32_t>(mesh.triangles[t][(k + 1) % 3]);
-      sides[next[low_end(mesh.triangles[t], k)]++] = {(std::uint64_t{std::min(a, b)} << 32) | std::max(a, b),
-                                                      t, a < b};
+struct SortedSides {
+  std::vector<Side> sides;
+  std::vector<int> first;  // of each lower end, and where the last one's end
+
+  explicit SortedSides(const TriangleMesh& mesh);
+  std::size_t vertices() const { return first.size() - 1; }
+  // visit(edge) of every edge with that lower end.
+  template <class Visit>
+  void for_each_edge(int low, Visit visit) const {
+    const Side *at = sides.data() + first[low], *end = sides.data() + first[low + 1];
+    while (at != end) {
+      const Side* next = at;
+      while (next != end && next->high == at->high) ++next;
+      visit(Edge{low, static_cast<int>(at->high), at, next});
+      at = next;
     }
   }
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, mesh.vertices.size(), 4096), [&](const auto& range) {
+};
+
+SortedSides::SortedSides(const TriangleMesh& mesh) {
+  const auto low_end = [](const std::array<int, 3>& t, int k) { return std::min(t[k], t[(k + 1) % 3]); };
+  first.assign(mesh.vertices.size() + 1, 0);
+  for (const auto& t : mesh.triangles)
+    for (int k = 0; k < 3; ++k) ++first[low_end(t, k) + 1];
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<int> next = first;
+  sides.resize(3 * mesh.triangles.size());
+  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+      sides[next[std::min(a, b)]++] = {static_cast<std::uint32_t>(std::max(a, b)),
+                                       static_cast<std::uint32_t>(t), a < b};
+    }
+  }
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices(), kVerticesABlock), [&](const auto& range) {
     for (std::size_t v = range.begin(); v < range.end(); ++v)
       std::sort(sides.begin() + first[v], sides.begin() + first[v + 1], [](const Side& x, const Side& y) {
-        return x.key != y.key ? x.key < y.key : x.triangle < y.triangle;
+        return x.high != y.high ? x.high < y.high : x.triangle < y.triangle;
       });
   });
-  return sides;
 }
 
-bool is_good(const Side* first, const Side* last) {
-  return last - first == 2 && first[0].forth != first[1].forth;
+bool is_good(const Edge& edge) {
+  return edge.last - edge.first == 2 && edge.first[0].forth != edge.first[1].forth;
 }
 
-template <class Visit>
-void for_each_edge(const std::vector<Side>& sides, Visit visit) {
-  for (std::size_t i = 0; i < sides.size();) {
-    std::size_t j = i;
-    while (j < sides.size() && sides[j].key == sides[i].key) ++j;
-    visit(sides.data() + i, sides.data() + j);
-    i = j;
+// In order.
+std::vector<Edge> bad_edges(const SortedSides& sides) {
+  return tbb::parallel_deterministic_reduce(
+      tbb::blocked_range<std::size_t>(0, sides.vertices(), kVerticesABlock), std::vector<Edge>(),
+      [&](const auto& range, std::vector<Edge> bad) {
+        for (auto low = static_cast<int>(range.begin()); low < static_cast<int>(range.end()); ++low)
+          sides.for_each_edge(low, [&](const Edge& edge) {
+            if (!is_good(edge)) bad.push_back(edge);
+          });
+        return bad;
+      },
+      [](std::vector<Edge> bad, const std::vector<Edge>& more) {
+        bad.insert(bad.end(), more.begin(), more.end());
+        return bad;
+      });
+}
+
+// Of each vertex the first one at the same place.
+std::vector<int> keepers_of(const std::vector<Eigen::Vector3d>& vertices) {
+  struct Place {
+    std::array<float, 3> at;
+    int vertex;
+  };
+  std::vector<Place> order(vertices.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Eigen::Vector3f at = vertices[i].cast<float>();
+    order[i] = {{at.x(), at.y(), at.z()}, static_cast<int>(i)};
   }
+  tbb::parallel_sort(order.begin(), order.end(), [](const Place& a, const Place& b) {
+    return a.at != b.at ? a.at < b.at : a.vertex < b.vertex;
+  });
+  std::vector<int> keeper(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && order[i].at == order[i - 1].at;
+    keeper[order[i].vertex] = same ? keeper[order[i - 1].vertex] : order[i].vertex;
+  }
+  return keeper;
 }
 
 void weld_equal_floats(TriangleMesh& mesh) {
   for (auto& v : mesh.vertices) v = v.cast<float>().cast<double>();
-  std::vector<int> order(mesh.vertices.size());
-  std::iota(order.begin(), order.end(), 0);
-  const auto less = [&](int i, int j) {
-    const auto &a = mesh.vertices[i], &b = mesh.vertices[j];
-    if (a.x() != b.x()) return a.x() < b.x();
-    if (a.y() != b.y()) return a.y() < b.y();
-    if (a.z() != b.z()) return a.z() < b.z();
-    return i < j;
-  };
-  tbb::parallel_sort(order.begin(), order.end(), less);
-  std::vector<int> keeper(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && mesh.vertices[order[i]] == mesh.vertices[order[i - 1]];
-    keeper[order[i]] = same ? keeper[order[i - 1]] : order[i];
-  }
-  std::vector<int> place(order.size(), -1);
+  const std::vector<int> keeper = keepers_of(mesh.vertices);
+  std::vector<int> place(keeper.size(), -1);
   int used = 0;
-  for (std::size_t i = 0; i < order.size(); ++i) {
+  for (std::size_t i = 0; i < keeper.size(); ++i) {
     if (keeper[i] != static_cast<int>(i)) continue;
     place[i] = used;
     mesh.vertices[used++] = mesh.vertices[i];
@@ -173,20 +212,20 @@ void split_side(TriangleMesh& mesh, int triangle, int a, int b, int middle) {
 }
 
 // Divides the edge between its wedges; false when it is not run as often forth as back.
-bool part_wedges(TriangleMesh& mesh, const Side* first, const Side* last) {
-  const int u = static_cast<int>(first->key >> 32), v = static_cast<int>(first->key & 0xffffffffu);
+bool part_wedges(TriangleMesh& mesh, const Edge& parted) {
+  const int u = parted.low, v = parted.high;
   const Eigen::Vector3d origin = mesh.vertices[u], edge = mesh.vertices[v] - origin;
   const Eigen::Vector3d axis = edge.normalized();
   const Eigen::Vector3d x = axis.unitOrthogonal(), y = axis.cross(x);
   std::vector<Leaf> leaves;
-  for (const Side* s = first; s != last; ++s) {
+  for (const Side* s = parted.first; s != parted.last; ++s) {
     const auto& t = mesh.triangles[s->triangle];
     const int w = t[0] + t[1] + t[2] - u - v;
     const Eigen::Vector3d arm = mesh.vertices[w] - origin;
     leaves.push_back({std::atan2(arm.dot(y), arm.dot(x)), *s});
   }
   const auto wedges = solid_wedges(std::move(leaves));
-  if (2 * static_cast<std::ptrdiff_t>(wedges.size()) != last - first) return false;
+  if (2 * static_cast<std::ptrdiff_t>(wedges.size()) != parted.last - parted.first) return false;
   for (const auto& [back, forth] : wedges) {
     double opening = forth.angle - back.angle;
     if (opening < 0) opening += 2.0 * std::numbers::pi;
@@ -204,21 +243,15 @@ bool part_wedges(TriangleMesh& mesh, const Side* first, const Side* last) {
 }  // namespace
 
 int count_bad_edges(const TriangleMesh& mesh) {
-  int bad = 0;
-  for_each_edge(sorted_sides(mesh),
-                [&](const Side* first, const Side* last) { bad += !is_good(first, last); });
-  return bad;
+  return static_cast<int>(bad_edges(SortedSides(mesh)).size());
 }
 
 EdgeMending mend_edges(TriangleMesh& mesh) {
   EdgeMending result;
   for (int round = 0; round < kMaxRounds; ++round) {
     weld_equal_floats(mesh);
-    const auto sides = sorted_sides(mesh);
-    std::vector<std::pair<const Side*, const Side*>> bad;
-    for_each_edge(sides, [&](const Side* first, const Side* last) {
-      if (!is_good(first, last)) bad.emplace_back(first, last);
-    });
+    const SortedSides sides(mesh);
+    const std::vector<Edge> bad = bad_edges(sides);
     if (bad.empty()) {
       result.manifold = true;
       return result;
@@ -230,10 +263,11 @@ EdgeMending mend_edges(TriangleMesh& mesh) {
     }
     // A triangle is divided once a round, so that the sides found above stay true.
     std::unordered_set<int> touched;
-    for (const auto& [first, last] : bad) {
-      if (std::any_of(first, last, [&](const Side& s) { return touched.contains(s.triangle); })) continue;
-      for (const Side* s = first; s != last; ++s) touched.insert(s->triangle);
-      if (!part_wedges(mesh, first, last)) return result;
+    for (const Edge& edge : bad) {
+      if (std::any_of(edge.first, edge.last, [&](const Side& s) { return touched.contains(s.triangle); }))
+        continue;
+      for (const Side* s = edge.first; s != edge.last; ++s) touched.insert(s->triangle);
+      if (!part_wedges(mesh, edge)) return result;
       ++result.edges_split;
     }
   }
