@@ -50,13 +50,8 @@ Mesh prism_of(const Opening& opening, double turn) {
   return mesh;
 }
 
-// The triangles whose boxes meet that of the prism.
 std::vector<int> triangles_near(const TriangleMesh& mesh, const Opening& opening) {
-  const Eigen::Vector3d a = opening.centre_mm - opening.clear_mm * opening.axis,
-                        b = opening.centre_mm + opening.rise_mm * opening.axis;
-  Eigen::AlignedBox3d box;
-  box.extend(a.cwiseMin(b) - Eigen::Vector3d::Constant(1.01 * opening.radius_mm));
-  box.extend(a.cwiseMax(b) + Eigen::Vector3d::Constant(1.01 * opening.radius_mm));
+  const Eigen::AlignedBox3d box = reach_of_cut(opening);
   std::vector<int> near;
   for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
     Eigen::AlignedBox3d own;
@@ -238,6 +233,13 @@ std::optional<CutSheet> cut(const TriangleMesh& mesh, const Opening& opening, do
 }
 
 }  // namespace
+
+Eigen::AlignedBox3d reach_of_cut(const Opening& opening) {
+  const Eigen::Vector3d a = opening.centre_mm - opening.clear_mm * opening.axis,
+                        b = opening.centre_mm + opening.rise_mm * opening.axis;
+  const Eigen::Vector3d beside = Eigen::Vector3d::Constant(1.01 * opening.radius_mm);
+  return {a.cwiseMin(b) - beside, a.cwiseMax(b) + beside};
+}
 
 std::optional<CutSheet> cut_sheet(const TriangleMesh& mesh, const Opening& opening, double turn) {
   try {

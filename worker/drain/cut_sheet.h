@@ -2,6 +2,7 @@
 // A surface cut open along a prism: the one sheet of it that crosses the prism loses what stands within.
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <optional>
 #include <vector>
@@ -18,6 +19,9 @@ inline constexpr int kPrismSides = 64;
 // From one try to the next: no share of a side's angle.
 inline constexpr double kTurnRadians = 0.0137;
 inline constexpr int kMostTurns = 5;
+
+// About the prism at any turn: a cut touches no triangle whose box is clear of it.
+Eigen::AlignedBox3d reach_of_cut(const Opening& opening);
 
 struct CutSheet {
   // Numbers name the vertices of the mesh and, behind them, those in `added`.
