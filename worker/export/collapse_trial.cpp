@@ -13,9 +13,10 @@ constexpr double kLeastTurnCosine = 0.3;   // of a triangle's normal in one coll
 constexpr double kLeastFoldCosine = -0.9;  // of two triangles with a side in common
 constexpr double kLeastRoundness = 0.03;   // 4 sqrt(3) area / sum of squared sides: 1 where all are equal
 constexpr double kCellInEdges = 2.2;
-constexpr double kClear = 0.4;  // of the deviation: below it the points are trusted
 constexpr double kAbout =
     1.5;  // times the distance of the nearest point: others that tell of the surface there
+constexpr double kFarthestBelieved = 2.0;  // in deviations: of the nearest point
+constexpr double kClear = 0.4;             // of the deviation: below it the points are believed
 
 double roundness(const Corners& p, double twice_area) {
   const double sides =
@@ -26,8 +27,13 @@ double roundness(const Corners& p, double twice_area) {
 }  // namespace
 
 CollapseTrial::CollapseTrial(const ThinningState& state, const ThinningBlock& block,
-                             const BlockLimits& limits, BlockMesh& mesh)
-    : state_(state), limits_(limits), mesh_(mesh) {
+                             const BlockLimits& limits, bool is_exact, BlockMesh& mesh)
+    : state_(state),
+      limits_(limits),
+      is_exact_(is_exact),
+      mesh_(mesh),
+      changed_(mesh.triangles(), 0),
+      moved_(mesh.vertices(), 0) {
   if (limits_.is_bounded || limits_.is_clear) fill_grid(block.box);
 }
 
@@ -61,6 +67,8 @@ bool CollapseTrial::holds(int u, int v, const Eigen::Vector3d& place) {
 
 void CollapseTrial::carry_out(int u, int v, const Eigen::Vector3d& place) {
   mesh_.merge(u, v, place, star_, new_, moved_points_);
+  moved_[u] = 1;
+  for (const ChangedTriangle& changed : new_) changed_[changed.triangle] = 1;
   if (!grid_) return;
   for (const ChangedTriangle& changed : new_) grid_->insert(changed.triangle, changed.box);
 }
@@ -122,11 +130,15 @@ bool CollapseTrial::keeps_points(int u, const Eigen::Vector3d& place) {
   });
 }
 
-// By the planes of the points about, the nearest one's and of those not much further; by the surface itself
-// where they are not of one mind.
+// Near enough to a point of the surface in most cases. Else the planes of the points about are asked, the
+// nearest one's and of those not much further, or the surface itself.
 bool CollapseTrial::is_on_surface(const Eigen::Vector3d& place) const {
-  double nearest = std::numeric_limits<double>::infinity(), low = nearest, high = 0.0;
+  const double limit = limits_.deviation_mm;
+  double nearest = std::numeric_limits<double>::infinity();
   for (const auto& p : star_places_) nearest = std::min(nearest, (p - place).squaredNorm());
+  if (nearest <= limit * limit) return true;
+  if (is_exact_ && state_.original != nullptr) return state_.original->is_within(place, limit);
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
   for (std::size_t i = 0; i < star_places_.size(); ++i) {
     const Eigen::Vector3d to = place - star_places_[i];
     if (to.squaredNorm() > kAbout * kAbout * nearest) continue;
@@ -134,9 +146,24 @@ bool CollapseTrial::is_on_surface(const Eigen::Vector3d& place) const {
     low = std::min(low, height);
     high = std::max(high, height);
   }
-  if (state_.original == nullptr) return low <= limits_.deviation_mm || star_places_.empty();
-  if (high <= kClear * limits_.deviation_mm && !star_places_.empty()) return true;
-  return state_.original->is_within(place, limits_.deviation_mm);
+  if (state_.original == nullptr) return low <= limit || star_places_.empty();
+  if (high <= kClear * limit && nearest <= kFarthestBelieved * kFarthestBelieved * limit * limit) return true;
+  return state_.original->is_within(place, limit);
+}
+
+bool CollapseTrial::stays_on_surface() const {
+  if (!limits_.is_bounded || state_.original == nullptr) return true;
+  const auto is_near = [&](const Eigen::Vector3d& place) {
+    return state_.original->is_within(place, limits_.deviation_mm);
+  };
+  for (int v = 0; v < static_cast<int>(moved_.size()); ++v)
+    if (moved_[v] && !mesh_.is_dead(v) && !is_near(mesh_.place(v))) return false;
+  for (int t = 0; t < mesh_.own(); ++t) {
+    if (!changed_[t] || !mesh_.is_alive(t)) continue;
+    const Corners p = mesh_.corners_of(t);
+    if (!is_near((p[0] + p[1] + p[2]) / 3.0)) return false;
+  }
+  return true;
 }
 
 // The new triangles meet no other one but where they share a corner or a side.
@@ -144,13 +171,10 @@ bool CollapseTrial::keeps_clear(int u, int v) {
   // A fan about one vertex that faces one way everywhere does not fold.
   Eigen::Vector3d facing = Eigen::Vector3d::Zero();
   Eigen::AlignedBox3d box;
-  outward_.clear();
+  outward_.assign(new_.size(), std::nullopt);
   for (const ChangedTriangle& changed : new_) {
     facing += changed.normal;
     box.extend(changed.box);
-    const Corners& p = changed.corners;
-    for (int k = 0; k < 3; ++k)
-      outward_.push_back((p[(k + 1) % 3] - p[k]).cross(changed.normal).stableNormalized());
   }
   const bool is_fan = std::all_of(new_.begin(), new_.end(), [&](const ChangedTriangle& changed) {
     return changed.normal.dot(facing) > 0.0;
@@ -181,7 +205,7 @@ bool CollapseTrial::keeps_clear(int u, int v) {
 }
 
 // v counts as u, since it becomes that.
-bool CollapseTrial::clear(const ChangedTriangle& changed, int t, const Corners& q, int u, int v) const {
+bool CollapseTrial::clear(const ChangedTriangle& changed, int t, const Corners& q, int u, int v) {
   const Corners& p = changed.corners;
   std::array<int, 3> a = mesh_.triangle(changed.triangle), b = mesh_.triangle(t);
   std::replace(a.begin(), a.end(), v, u);
@@ -203,23 +227,36 @@ bool CollapseTrial::clear(const ChangedTriangle& changed, int t, const Corners& 
   return shared == 2 && n.dot(m) > kLeastFoldCosine * n.norm() * m.norm();
 }
 
+const CollapseTrial::Outward& CollapseTrial::outward_of(const ChangedTriangle& changed) {
+  std::optional<Outward>& outward = outward_[&changed - new_.data()];
+  if (outward) return *outward;
+  const Corners& p = changed.corners;
+  const auto of_side = [&](int k) -> Eigen::Vector3d {
+    return (p[(k + 1) % 3] - p[k]).cross(changed.normal).stableNormalized();
+  };
+  return outward.emplace(Outward{of_side(0), of_side(1), of_side(2)});
+}
+
 // The quick answer: q but for its corner j, which is the corner i of the other, lies on one side of the
 // other's plane, or beyond one of its sides (that end in the corner).
-bool CollapseTrial::is_beyond(const ChangedTriangle& changed, const Corners& q, int i, int j) const {
-  const Eigen::Vector3d* outward = &outward_[3 * (&changed - new_.data())];
+bool CollapseTrial::is_beyond(const ChangedTriangle& changed, const Corners& q, int i, int j) {
   const double margin = kLeastGapMm * changed.normal.norm();
   double low = std::numeric_limits<double>::infinity(), high = -low;
-  std::array<double, 3> beyond{low, low, low};
   for (int l = 0; l < 3; ++l) {
     if (l == j) continue;
     const double height = changed.normal.dot(q[l] - changed.corners[0]);
     low = std::min(low, height);
     high = std::max(high, height);
-    for (int k = 0; k < 3; ++k) beyond[k] = std::min(beyond[k], outward[k].dot(q[l] - changed.corners[k]));
   }
   if (low > margin || high < -margin) return true;
-  for (int k = 0; k < 3; ++k)
-    if (beyond[k] > kLeastGapMm && (i < 0 || i == k || i == (k + 1) % 3)) return true;
+  const Outward& outward = outward_of(changed);
+  for (int k = 0; k < 3; ++k) {
+    if (i >= 0 && i != k && i != (k + 1) % 3) continue;
+    double beyond = std::numeric_limits<double>::infinity();
+    for (int l = 0; l < 3; ++l)
+      if (l != j) beyond = std::min(beyond, outward[k].dot(q[l] - changed.corners[k]));
+    if (beyond > kLeastGapMm) return true;
+  }
   return false;
 }
 

@@ -58,12 +58,12 @@ Eigen::Vector3d solve(const Eigen::Matrix3d& a, const Eigen::Vector3d& r) {
 
 class Block {
  public:
-  Block(ThinningState& state, const ThinningBlock& block, const BlockLimits& limits)
+  Block(ThinningState& state, const ThinningBlock& block, const BlockLimits& limits, bool is_exact)
       : block_(block),
         limits_(limits),
         origin_(block.box.center()),
         mesh_(state, block),
-        trial_(state, block, limits, mesh_) {
+        trial_(state, block, limits, is_exact, mesh_) {
     stamps_.assign(mesh_.vertices(), 0);
     quadrics_.resize(mesh_.vertices());
     for (int t = 0; t < mesh_.own(); ++t) add_planes(t);
@@ -86,8 +86,9 @@ class Block {
       if (next.stamp == stamps_[next.u] + stamps_[next.v] && !mesh_.is_dead(next.u) && !mesh_.is_dead(next.v))
         left -= 2 * try_collapse(next);
     }
-    mesh_.write_back();
   }
+  bool stays_on_surface() const { return trial_.stays_on_surface(); }
+  void write_back() const { mesh_.write_back(); }
 
  private:
   void add_planes(int t) {
@@ -165,7 +166,14 @@ class Block {
 }  // namespace
 
 void thin_block(ThinningState& state, const ThinningBlock& block, const BlockLimits& limits) {
-  Block(state, block, limits).run();
+  // Believing the points is right in nearly all blocks, and sooner done than asking the surface of each try.
+  for (const bool is_exact : {false, true}) {
+    Block thinned(state, block, limits, is_exact);
+    thinned.run();
+    if (!is_exact && !thinned.stays_on_surface()) continue;
+    thinned.write_back();
+    return;
+  }
 }
 
 }  // namespace skinframe

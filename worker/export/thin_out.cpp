@@ -20,6 +20,7 @@ constexpr std::array kPasses = {0.15, 0.4, 1.0, 1.0};
 // Where nothing is bounded the steps are small and their order matters less: each pass takes what is cheap
 // enough, and what it was refused may have room in the next.
 constexpr int kUnboundedPasses = 4;
+constexpr double kEnough = 1.002;  // of the triangles wanted: no pass is made for less
 constexpr double kTrianglesABlock = 6000.0;
 constexpr double kBlocksInSurface = 2.0;  // of n^3 boxes about a body, some 2 n^2 hold surface
 constexpr int kMostBlocksAcross = 24;
@@ -61,20 +62,35 @@ class Boxes {
 };
 
 std::vector<ThinningBlock> blocks_of(const TriangleMesh& mesh, const Boxes& boxes) {
-  std::vector<ThinningBlock> blocks(boxes.count());
-  for (int t = 0; t < static_cast<int>(mesh.triangles.size()); ++t) {
-    std::array<int, 3> low{}, high{};
-    for (int k = 0; k < 3; ++k) {
-      const auto c = boxes.cell(mesh.vertices[mesh.triangles[t][k]]);
+  struct Cells {
+    std::array<int, 3> low, high;
+  };
+  const auto cells_of = [&](const std::array<int, 3>& t) {
+    Cells cells{boxes.cell(mesh.vertices[t[0]]), boxes.cell(mesh.vertices[t[0]])};
+    for (int k = 1; k < 3; ++k) {
+      const auto c = boxes.cell(mesh.vertices[t[k]]);
       for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = k == 0 ? c[axis] : std::min(low[axis], c[axis]);
-        high[axis] = k == 0 ? c[axis] : std::max(high[axis], c[axis]);
+        cells.low[axis] = std::min(cells.low[axis], c[axis]);
+        cells.high[axis] = std::max(cells.high[axis], c[axis]);
       }
     }
-    if (low == high) {
-      blocks[boxes.number(low)].own.push_back(t);
+    return cells;
+  };
+  constexpr int kSeveral = -1;
+  std::vector<int> home(mesh.triangles.size());  // the box that a triangle is in
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, home.size(), 4096), [&](const auto& range) {
+    for (std::size_t t = range.begin(); t < range.end(); ++t) {
+      const auto [low, high] = cells_of(mesh.triangles[t]);
+      home[t] = low == high ? boxes.number(low) : kSeveral;
+    }
+  });
+  std::vector<ThinningBlock> blocks(boxes.count());
+  for (int t = 0; t < static_cast<int>(home.size()); ++t) {
+    if (home[t] != kSeveral) {
+      blocks[home[t]].own.push_back(t);
       continue;
     }
+    const auto [low, high] = cells_of(mesh.triangles[t]);
     for (int x = low[0]; x <= high[0]; ++x)
       for (int y = low[1]; y <= high[1]; ++y)
         for (int z = low[2]; z <= high[2]; ++z) blocks[boxes.number({x, y, z})].beside.push_back(t);
@@ -82,6 +98,17 @@ std::vector<ThinningBlock> blocks_of(const TriangleMesh& mesh, const Boxes& boxe
   for (int b = 0; b < boxes.count(); ++b) blocks[b].box = boxes.box(b);
   std::erase_if(blocks, [](const ThinningBlock& b) { return b.own.empty(); });
   return blocks;
+}
+
+// Of the triangles within the blocks; those at seams stay. Once few are left to go, blocks make up for the
+// seams, so that no further pass is needed for what these held back.
+double share_to_keep(const std::vector<ThinningBlock>& blocks, std::size_t left,
+                     const ThinningOptions& options, int pass) {
+  const auto all = static_cast<double>(left), wanted = static_cast<double>(options.triangles);
+  if (options.is_bounded || pass == 0) return wanted / all;
+  double own = 0.0;
+  for (const ThinningBlock& block : blocks) own += static_cast<double>(block.own.size());
+  return std::max(0.0, 1.0 - (all - wanted) / std::max(own, 1.0));
 }
 
 // All corners, each bound to one of its triangles, and the middles of large triangles.
@@ -153,12 +180,14 @@ Thinned thin_out(TriangleMesh& mesh, const ThinningOptions& options, const RunCo
   state.original = options.original;
   if (options.is_bounded) state.points = points_of(mesh, kLargeInDeviations * options.max_deviation_mm);
   const int passes = options.is_bounded ? static_cast<int>(kPasses.size()) : kUnboundedPasses;
+  const auto enough =
+      static_cast<std::size_t>((options.is_bounded ? 1.0 : kEnough) * static_cast<double>(options.triangles));
   for (int pass = 0; pass < passes; ++pass) {
     const std::size_t left = mesh.triangles.size();
-    if (left <= options.triangles || context.cancelled()) break;
+    if (left <= enough || context.cancelled()) break;
     const double of_deviation = options.is_bounded ? kPasses[pass] : 1.0;
-    const double share = static_cast<double>(options.triangles) / static_cast<double>(left);
     const auto blocks = blocks_of(mesh, Boxes(mesh, left, pass));
+    const double share = share_to_keep(blocks, left, options, pass);
     state.gone.assign(left, 0);
     link_points(state);
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
