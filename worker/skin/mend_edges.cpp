@@ -19,6 +19,8 @@ namespace {
 
 constexpr int kMaxRounds = 12;
 constexpr double kNudge = 0.02;  // of the edge's length
+constexpr double kLeastNudge =
+    4.8e-7;  // of the largest coordinate: some floats, or the parts fall together again
 constexpr std::size_t kVerticesABlock = 4096;
 
 // One side of one triangle, beside others with the same lower end: eight bytes, since millions are sorted.
@@ -215,6 +217,7 @@ void split_side(TriangleMesh& mesh, int triangle, int a, int b, int middle) {
 bool part_wedges(TriangleMesh& mesh, const Edge& parted) {
   const int u = parted.low, v = parted.high;
   const Eigen::Vector3d origin = mesh.vertices[u], edge = mesh.vertices[v] - origin;
+  const double nudge = std::max(kNudge * edge.norm(), kLeastNudge * origin.cwiseAbs().maxCoeff());
   const Eigen::Vector3d axis = edge.normalized();
   const Eigen::Vector3d x = axis.unitOrthogonal(), y = axis.cross(x);
   std::vector<Leaf> leaves;
@@ -231,7 +234,7 @@ bool part_wedges(TriangleMesh& mesh, const Edge& parted) {
     if (opening < 0) opening += 2.0 * std::numbers::pi;
     const double middle_angle = back.angle + 0.5 * opening;
     const Eigen::Vector3d inward = std::cos(middle_angle) * x + std::sin(middle_angle) * y;
-    const Eigen::Vector3d middle = origin + 0.5 * edge + kNudge * edge.norm() * inward;
+    const Eigen::Vector3d middle = origin + 0.5 * edge + nudge * inward;
     const int index = static_cast<int>(mesh.vertices.size());
     mesh.vertices.push_back(middle.cast<float>().cast<double>());
     split_side(mesh, back.side.triangle, u, v, index);

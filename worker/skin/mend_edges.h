@@ -17,7 +17,7 @@ struct EdgeMending {
 // closed and oriented (every edge is run as often forth as back) the result is `manifold`. Corners that are
 // equal as floats become one; triangles that lose a corner go, as do pairs of equal and opposite ones. An
 // edge with 2k triangles is divided at k midpoints, one for each wedge of solid about it, each a little
-// inside its wedge, so the wedges part. Such a midpoint moves by a fiftieth of the edge.
+// inside its wedge, so the wedges part. Such a midpoint moves by a fiftieth of the edge, some floats at least.
 EdgeMending mend_edges(TriangleMesh& mesh);
 
 // The number of edges that do not have exactly two triangles in opposite directions; by index, not by

@@ -35,6 +35,15 @@ TEST(MendEdges, PartsEveryEdgeOfACheckerboard) {
   EXPECT_NEAR(signed_volume(mesh), 32.0, 3.0);
 }
 
+// So short an edge that a fiftieth of it is lost in floats.
+TEST(MendEdges, PartsTwoPlatesThatShareATinyEdgeFarFromTheOrigin) {
+  TriangleMesh mesh = bodies::blocks({2, 2, 1}, {1, 1, 3e-5}, [](int x, int y, int) { return x == y; });
+  for (auto& v : mesh.vertices) v += Eigen::Vector3d(150, 150, 0);
+  ASSERT_EQ(count_bad_edges(mesh), 1);
+  EXPECT_TRUE(mend_edges(mesh).manifold);
+  EXPECT_EQ(count_bad_edges(mesh), 0);
+}
+
 TEST(MendEdges, WeldsWhatFallsTogetherInFloat) {
   TriangleMesh mesh = bodies::sphere(1.0, 3);
   for (auto& v : mesh.vertices) v *= 1e-7;     // a sphere smaller than a float's step
