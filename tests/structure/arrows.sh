@@ -21,10 +21,10 @@ forbid client '(worker|server)/' "the client knows proto/ only"
 forbid server '(worker|client)/' "the server knows proto/ only"
 forbid worker '(server|client)/' "the worker knows proto/ only"
 forbid proto "(server|worker|client)/" "proto knows nobody"
-for room in run profile mesh raster solid skin stress drain frame mechanics structure optimize support problem export verify report sample pipeline check picture job metrics; do
+for room in run sparse profile mesh raster solid skin stress drain frame mechanics structure optimize support problem export verify report sample pipeline check picture job metrics; do
   forbid "worker/$room" '(skinframe/v1|grpc|google/protobuf)' "only the agent sees gRPC and protobuf"
 done
-stages=(profile mesh solid skin stress drain frame mechanics structure optimize support problem export verify report pipeline)
+stages=(sparse profile mesh solid skin stress drain frame mechanics structure optimize support problem export verify report pipeline)
 for i in "${!stages[@]}"; do
   for j in "${!stages[@]}"; do
     if [ "$j" -gt "$i" ]; then
@@ -32,9 +32,9 @@ for i in "${!stages[@]}"; do
     fi
   done
 done
-forbid worker/check 'worker/(solid|skin|stress|drain|frame|mechanics|structure|optimize|problem|export|verify|report|pipeline)/' "the check shares no code with what it judges"
-forbid worker/picture 'worker/(solid|skin|stress|drain|frame|mechanics|structure|optimize|support|problem|export|verify|report|sample|pipeline|check)/' "pictures are of exported files alone"
-forbid worker/raster 'worker/(profile|solid|skin|stress|drain|frame|mechanics|structure|optimize|support|problem|export|verify|report|sample|pipeline|check|picture)/' "pixels do not know what they show"
+forbid worker/check 'worker/(sparse|solid|skin|stress|drain|frame|mechanics|structure|optimize|problem|export|verify|report|pipeline)/' "the check shares no code with what it judges"
+forbid worker/picture 'worker/(sparse|solid|skin|stress|drain|frame|mechanics|structure|optimize|support|problem|export|verify|report|sample|pipeline|check)/' "pictures are of exported files alone"
+forbid worker/raster 'worker/(sparse|profile|solid|skin|stress|drain|frame|mechanics|structure|optimize|support|problem|export|verify|report|sample|pipeline|check|picture)/' "pixels do not know what they show"
 for room in jobs store; do
   forbid "server/$room" 'server/api/' "$room stands left of api"
 done

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
-#include <Eigen/Sparse>
+#include <algorithm>
 #include <cmath>
 
 #include "worker/stress/isotropic.h"
@@ -31,22 +31,22 @@ StrainMatrix strain_matrix(const TetMesh& mesh, const std::array<int, 4>& tet) {
   return b;
 }
 
-struct Unknowns {
-  std::vector<int> first;  // of a vertex; -1 when it is prescribed or in no tetrahedron
-  int count = 0;
-};
-
-Unknowns number_unknowns(const TetMesh& mesh, const Prescribed& prescribed) {
-  Unknowns unknowns{std::vector<int>(mesh.vertices_mm.size(), -1), 0};
-  std::vector<char> used(mesh.vertices_mm.size(), 0);
+// Vertices of no tetrahedron have no unknowns.
+std::vector<char> free_axes(const TetMesh& mesh, const Prescribed& prescribed) {
+  std::vector<char> free(3 * mesh.vertices_mm.size(), 0);
   for (const auto& tet : mesh.tets)
-    for (const int v : tet) used[v] = 1;
-  for (std::size_t v = 0; v < used.size(); ++v) {
-    if (!used[v] || prescribed[v]) continue;
-    unknowns.first[v] = unknowns.count;
-    unknowns.count += 3;
-  }
-  return unknowns;
+    for (const int v : tet)
+      if (!prescribed[v]) std::fill_n(free.begin() + 3 * v, 3, 1);
+  return free;
+}
+
+std::vector<std::pair<int, int>> links_of(const TetMesh& mesh) {
+  std::vector<std::pair<int, int>> links;
+  links.reserve(mesh.tets.size() * 6);
+  for (const auto& tet : mesh.tets)
+    for (int i = 0; i < 4; ++i)
+      for (int j = 0; j < i; ++j) links.emplace_back(tet[i], tet[j]);
+  return links;
 }
 
 }  // namespace
@@ -61,41 +61,30 @@ Result<std::vector<ElasticResponse>> solve_elasticity(const TetMesh& mesh, const
   if (n > kMaxElasticVertices)
     return invalid_input(fmt::format("{} vertices of tetrahedra, more than {}", n, kMaxElasticVertices));
 
-  const Unknowns unknowns = number_unknowns(mesh, prescribed);
+  NodeMatrix stiffness(3, free_axes(mesh, prescribed), links_of(mesh));
+  std::vector<int> first_row;
+  for (std::size_t v = 0; v < n; ++v) first_row.push_back(stiffness.row(3 * v));
   const auto d = isotropic_stiffness(material);
   const int cases = static_cast<int>(forces_n.size());
-  Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(unknowns.count, cases);
+  Eigen::MatrixXd rhs = Eigen::MatrixXd::Zero(stiffness.rows(), cases);
   for (int c = 0; c < cases; ++c)
     for (std::size_t v = 0; v < n; ++v)
-      if (unknowns.first[v] >= 0) rhs.block<3, 1>(unknowns.first[v], c) = forces_n[c][v];
+      if (first_row[v] >= 0) rhs.block<3, 1>(first_row[v], c) = forces_n[c][v];
 
-  std::vector<Eigen::Triplet<double>> entries;  // of the lower half
-  entries.reserve(mesh.tets.size() * 84);
   for (const auto& tet : mesh.tets) {
     const StrainMatrix b = strain_matrix(mesh, tet);
     const Eigen::Matrix<double, 12, 12> k = tet_volume_mm3(mesh, tet) * b.transpose() * d * b;
-    for (int i = 0; i < 4; ++i) {
-      const int row = unknowns.first[tet[i]];
-      if (row < 0) continue;
-      for (int j = 0; j < 4; ++j) {
-        const int column = unknowns.first[tet[j]];
-        if (column < 0) {
-          if (prescribed[tet[j]])
-            rhs.middleRows<3>(row).colwise() -= k.block<3, 3>(3 * i, 3 * j) * *prescribed[tet[j]];
-          continue;
-        }
-        for (int p = 0; p < 3; ++p)
-          for (int q = 0; q < 3; ++q)
-            if (row + p >= column + q) entries.emplace_back(row + p, column + q, k(3 * i + p, 3 * j + q));
-      }
+    stiffness.add(tet, k);
+    for (int j = 0; j < 4; ++j) {
+      if (!prescribed[tet[j]]) continue;
+      for (int i = 0; i < 4; ++i)
+        if (const int row = first_row[tet[i]]; row >= 0)
+          rhs.middleRows<3>(row).colwise() -= k.block<3, 3>(3 * i, 3 * j) * *prescribed[tet[j]];
     }
   }
-  Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(unknowns.count, cases);
-  if (unknowns.count > 0) {
-    auto solved = solve_held(std::move(entries), rhs, context);
-    if (!solved) return solved.error();
-    solution = std::move(solved).value();
-  }
+  auto solved = solve_held(std::move(stiffness), std::move(rhs), context);
+  if (!solved) return solved.error();
+  const Eigen::MatrixXd& solution = *solved;
   if (context.cancelled()) return cancelled_error();
 
   std::vector<ElasticResponse> responses(cases);
@@ -103,8 +92,8 @@ Result<std::vector<ElasticResponse>> solve_elasticity(const TetMesh& mesh, const
     auto& [displacement, stress] = responses[c];
     displacement.resize(n, Eigen::Vector3d::Zero());
     for (std::size_t v = 0; v < n; ++v) {
-      if (unknowns.first[v] >= 0)
-        displacement[v] = solution.block<3, 1>(unknowns.first[v], c);
+      if (first_row[v] >= 0)
+        displacement[v] = solution.block<3, 1>(first_row[v], c);
       else if (prescribed[v])
         displacement[v] = *prescribed[v];
     }

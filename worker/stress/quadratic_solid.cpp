@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
-#include <Eigen/Sparse>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -85,8 +84,8 @@ Strain strain_at(const Eigen::Matrix<double, 3, 4>& slopes, const std::array<dou
   return b;
 }
 
-Eigen::Matrix<double, 30, 30> stiffness_of(const QuadraticMesh& mesh, const std::array<int, 10>& e,
-                                           const Eigen::Matrix<double, 6, 6>& d) {
+Eigen::Matrix<double, 30, 30> element_stiffness(const QuadraticMesh& mesh, const std::array<int, 10>& e,
+                                                const Eigen::Matrix<double, 6, 6>& d) {
   constexpr double kNear = 0.58541019662496852, kFar = 0.13819660112501051;
   const auto [slopes, volume] = slopes_of(mesh, e);
   Eigen::Matrix<double, 30, 30> k = Eigen::Matrix<double, 30, 30>::Zero();
@@ -97,6 +96,18 @@ Eigen::Matrix<double, 30, 30> stiffness_of(const QuadraticMesh& mesh, const std:
     const Strain stress = d * b;
     k.noalias() += volume / 4 * b.transpose() * stress;
   }
+  return k;
+}
+
+NodeMatrix stiffness_of(const QuadraticMesh& mesh, const std::vector<char>& is_free,
+                        const Eigen::Matrix<double, 6, 6>& d) {
+  std::vector<std::pair<int, int>> links;
+  links.reserve(mesh.tets.size() * 45);
+  for (const auto& e : mesh.tets)
+    for (int i = 0; i < 10; ++i)
+      for (int j = 0; j < i; ++j) links.emplace_back(e[i], e[j]);
+  NodeMatrix k(3, is_free, std::move(links));
+  for (const auto& e : mesh.tets) k.add(e, element_stiffness(mesh, e, d));
   return k;
 }
 
@@ -138,6 +149,45 @@ Eigen::VectorXd weight_n(const QuadraticMesh& mesh, double density) {
   return f;
 }
 
+std::vector<char> free_axes(const QuadraticMesh& mesh, const std::function<bool(const Vector3d&)>& held) {
+  std::vector<char> is_free(3 * mesh.nodes_mm.size(), 1);
+  for (const auto& t : mesh.surface)
+    for (const int v : t)
+      if (held(mesh.nodes_mm[v])) std::fill_n(is_free.begin() + 3 * v, 3, 0);
+  return is_free;
+}
+
+// Of each node its first row, -1 where it is held; and how many rows there are.
+std::pair<std::vector<int>, int> rows_of(const std::vector<char>& is_free) {
+  std::vector<int> first;
+  int rows = 0;
+  for (std::size_t i = 0; i < is_free.size(); i += 3) {
+    first.push_back(is_free[i] ? rows : -1);
+    if (is_free[i]) rows += 3;
+  }
+  return {std::move(first), rows};
+}
+
+Eigen::VectorXd pressed_n(const QuadraticMesh& mesh, const SolidCase& solid_case) {
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(mesh.nodes_mm.size()));
+  for (const StressLoad& load : solid_case.loads) press(mesh, load, f);
+  return f;
+}
+
+SolidAnswer answer_of(const QuadraticMesh& mesh, const std::vector<int>& first_row,
+                      const Eigen::Ref<const Eigen::VectorXd>& solution, const Eigen::VectorXd& external_n) {
+  SolidAnswer answer;
+  for (std::size_t v = 0; v < first_row.size(); ++v) {
+    if (first_row[v] < 0) continue;
+    const Vector3d u = solution.segment<3>(first_row[v]);
+    answer.external_work_n_mm += u.dot(external_n.segment<3>(3 * static_cast<Eigen::Index>(v)));
+    if (u.norm() <= answer.max_displacement_mm) continue;
+    answer.max_displacement_mm = u.norm();
+    answer.at_mm = mesh.nodes_mm[v];
+  }
+  return answer;
+}
+
 }  // namespace
 
 Result<std::vector<SolidAnswer>> solve_quadratic_solid(const TetMesh& linear, const ElasticMaterial& material,
@@ -149,56 +199,26 @@ Result<std::vector<SolidAnswer>> solve_quadratic_solid(const TetMesh& linear, co
   if (linear.tets.size() > kMaxQuadraticTets)
     return invalid_input(fmt::format("{} tetrahedra, more than {}", linear.tets.size(), kMaxQuadraticTets));
   const QuadraticMesh mesh = with_middles(linear);
-  const auto n = static_cast<Eigen::Index>(mesh.nodes_mm.size());
-  std::vector<int> place(n, 0);
-  for (const auto& t : mesh.surface)
-    for (const int v : t)
-      if (held(mesh.nodes_mm[v])) place[v] = -1;
-  int free = 0;
-  for (int& p : place) {
-    if (p < 0) continue;
-    p = free;
-    free += 3;
-  }
-  Eigen::MatrixXd loads = Eigen::MatrixXd::Zero(3 * n, static_cast<Eigen::Index>(cases.size())),
-                  right(free, loads.cols());
+  const std::vector<char> is_free = free_axes(mesh, held);
+  const auto [first_row, rows] = rows_of(is_free);
+  if (rows == 0) return invalid_input("the solid is not held by its supports");
   const Eigen::VectorXd weight = weight_n(mesh, weight_density_n_mm3);
-  for (std::size_t c = 0; c < cases.size(); ++c)
-    for (const StressLoad& load : cases[c].loads) press(mesh, load, loads.col(c));
-  for (Eigen::Index v = 0; v < n; ++v)
-    for (Eigen::Index c = 0; c < loads.cols(); ++c)
-      if (place[v] >= 0)
-        right.block<3, 1>(place[v], c) =
-            loads.block<3, 1>(3 * v, c) + (cases[c].gravity ? 1.0 : 0.0) * weight.segment<3>(3 * v);
-
-  const auto d = isotropic_stiffness(material);
-  std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(mesh.tets.size() * 465);
-  for (const auto& e : mesh.tets) {
-    const auto k = stiffness_of(mesh, e, d);
-    for (int i = 0; i < 30; ++i)
-      for (int j = 0; j < 30; ++j) {
-        const int row = place[e[i / 3]] + i % 3, column = place[e[j / 3]] + j % 3;
-        if (place[e[i / 3]] >= 0 && place[e[j / 3]] >= 0 && row >= column)
-          entries.emplace_back(row, column, k(i, j));
-      }
+  Eigen::MatrixXd right(rows, static_cast<Eigen::Index>(cases.size()));
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    Eigen::VectorXd f = pressed_n(mesh, cases[c]);
+    if (cases[c].gravity) f += weight;
+    for (std::size_t v = 0; v < first_row.size(); ++v)
+      if (first_row[v] >= 0)
+        right.block<3, 1>(first_row[v], static_cast<Eigen::Index>(c)) =
+            f.segment<3>(3 * static_cast<Eigen::Index>(v));
   }
-  if (free == 0) return invalid_input("the solid is not held by its supports");
-  const auto solved = solve_held(std::move(entries), right, context);
-  if (!solved) return solved.error();
-  const Eigen::MatrixXd& solution = *solved;
-
-  std::vector<SolidAnswer> answers(cases.size());
-  for (std::size_t c = 0; c < cases.size(); ++c)
-    for (Eigen::Index v = 0; v < n; ++v) {
-      if (place[v] < 0) continue;
-      const Vector3d u = solution.block<3, 1>(place[v], static_cast<Eigen::Index>(c));
-      answers[c].external_work_n_mm +=
-          u.dot(Vector3d(loads.block<3, 1>(3 * v, static_cast<Eigen::Index>(c))));
-      if (u.norm() <= answers[c].max_displacement_mm) continue;
-      answers[c].max_displacement_mm = u.norm();
-      answers[c].at_mm = mesh.nodes_mm[v];
-    }
+  const auto solution =
+      solve_held(stiffness_of(mesh, is_free, isotropic_stiffness(material)), std::move(right), context);
+  if (!solution) return solution.error();
+  std::vector<SolidAnswer> answers;
+  for (std::size_t c = 0; c < cases.size(); ++c)  // pressed once more, rather than kept beside the factor
+    answers.push_back(
+        answer_of(mesh, first_row, solution->col(static_cast<Eigen::Index>(c)), pressed_n(mesh, cases[c])));
   return answers;
 }
 

@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "worker/stress/solve_held.h"
 
-#include <Eigen/CholmodSupport>
-
-#include "worker/run/ordering_turn.h"
+#include "worker/sparse/node_cholesky.h"
 
 namespace skinframe {
 
-Result<Eigen::MatrixXd> solve_held(std::vector<Eigen::Triplet<double>> entries, const Eigen::MatrixXd& f,
-                                   const RunContext& context) {
-  Eigen::SparseMatrix<double> stiffness(f.rows(), f.rows());
-  stiffness.setFromTriplets(entries.begin(), entries.end());
-  std::vector<Eigen::Triplet<double>>().swap(entries);  // = {} would keep the memory, beside the factor's
+Result<Eigen::MatrixXd> solve_held(NodeMatrix&& stiffness, Eigen::MatrixXd&& f, const RunContext& context) {
   if (context.cancelled()) return cancelled_error();
-  Eigen::CholmodSupernodalLLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver;
-  solver.cholmod().print = 0;
+  std::optional<NodeCholesky> factor;
   {
-    const OrderingTurn turn;
-    solver.analyzePattern(stiffness);
+    const NodeMatrix k = std::move(stiffness);
+    factor = NodeCholesky::factorise(k);
   }
-  solver.factorize(stiffness);
-  if (solver.info() != Eigen::Success) return invalid_input("the tetrahedra are not held by their supports");
+  if (!factor) return invalid_input("the tetrahedra are not held by their supports");
   if (context.cancelled()) return cancelled_error();
-  Eigen::MatrixXd u = solver.solve(f);
+  Eigen::MatrixXd u = std::move(f);
+  factor->solve_in_place(&u);
   if (!u.allFinite()) return invalid_input("the tetrahedra are not held by their supports");
   return u;
 }

@@ -3,41 +3,44 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/CholmodSupport>
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <new>
 
-#include "worker/run/ordering_turn.h"
+#include "worker/sparse/node_cholesky.h"
 
 namespace skinframe {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using SparseMatrix = Eigen::SparseMatrix<double>;
-using Triplets = std::vector<Eigen::Triplet<double>>;
 
-// The lower half of all freedoms, held ones included.
-template <class Nodes, class Matrix>
-void add_element(const Nodes& nodes, const Matrix& k, Triplets& entries) {
-  for (int j = 0; j < k.cols(); ++j)
-    for (int i = 0; i < k.rows(); ++i) {
-      const int row = 6 * nodes[i / 6] + i % 6, column = 6 * nodes[j / 6] + j % 6;
-      if (row >= column) entries.emplace_back(row, column, k(i, j));
-    }
+std::vector<std::pair<int, int>> links_of(const Structure& s) {
+  std::vector<std::pair<int, int>> links;
+  links.reserve(3 * s.shells.size() + s.struts.size());
+  for (const StructureShell& shell : s.shells)
+    for (int k = 0; k < 3; ++k) links.emplace_back(shell.nodes[k], shell.nodes[(k + 1) % 3]);
+  for (const StructureStrut& strut : s.struts) links.emplace_back(strut.nodes[0], strut.nodes[1]);
+  return links;
 }
 
-SparseMatrix assemble(const Structure& s) {
-  Triplets entries;
-  entries.reserve(s.shells.size() * 189 + s.struts.size() * 93);
+// What is neither held nor joined to nothing.
+std::vector<char> free_freedoms(const Structure& s) {
+  std::vector<char> joined(s.nodes_mm.size(), 0), free;
+  for (const auto& shell : s.shells)
+    for (const int v : shell.nodes) joined[v] = 1;
+  for (const auto& strut : s.struts)
+    for (const int v : strut.nodes) joined[v] = 1;
+  for (std::size_t v = 0; v < joined.size(); ++v)
+    for (int k = 0; k < 6; ++k) free.push_back(joined[v] && !s.held[v][k]);
+  return free;
+}
+
+NodeMatrix assemble(const Structure& s) {
+  NodeMatrix k(6, free_freedoms(s), links_of(s));
   for (std::size_t i = 0; i < s.shells.size(); ++i)
-    add_element(s.shells[i].nodes, shell_stiffness(s.shell(i), s.material), entries);
+    k.add(s.shells[i].nodes, shell_stiffness(s.shell(i), s.material));
   for (std::size_t j = 0; j < s.struts.size(); ++j)
-    add_element(s.struts[j].nodes, rigid_strut_stiffness(s.strut(j), s.material), entries);
-  const auto size = 6 * static_cast<Eigen::Index>(s.nodes_mm.size());
-  SparseMatrix k(size, size);
-  k.setFromTriplets(entries.begin(), entries.end());
+    k.add(s.struts[j].nodes, rigid_strut_stiffness(s.strut(j), s.material));
   return k;
 }
 
@@ -63,52 +66,14 @@ void add_forces(const std::vector<Vector3d>& at_mm, const std::array<int, N>& no
     forces->template middleRows<6>(6 * nodes[i]) += f.template middleRows<6>(6 * i);
 }
 
-// Eigen's wrapper, which solves by the whole factor, with solves by its parts.
-class Factor : public Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> {
- public:
-  VectorXd solve_part(int system, VectorXd x) {
-    cholmod_dense right = Eigen::viewAsCholmod(x);
-    cholmod_dense* solved = cholmod_solve(system, m_cholmodFactor, &right, &cholmod());
-    if (solved == nullptr) throw std::bad_alloc();
-    x = VectorXd::Map(static_cast<const double*>(solved->x), x.size());
-    cholmod_free_dense(&solved, &cholmod());
-    return x;
-  }
-};
-
 }  // namespace
 
 struct StructureSolver::Impl {
-  explicit Impl(const Structure& s) : structure(s) {}
+  explicit Impl(const Structure& s) : structure(s), stiffness(assemble(s)) {}
 
   const Structure& structure;
-  SparseMatrix held_removed;  // lower half, free freedoms only
-  std::vector<int> place;     // of a freedom among the free ones, -1
-  int free = 0;
-  Factor factor;
-
-  void number_freedoms() {
-    const std::size_t n = structure.nodes_mm.size();
-    std::vector<char> joined(n, 0);
-    for (const auto& shell : structure.shells)
-      for (const int v : shell.nodes) joined[v] = 1;
-    for (const auto& strut : structure.struts)
-      for (const int v : strut.nodes) joined[v] = 1;
-    place.assign(6 * n, -1);
-    for (std::size_t i = 0; i < 6 * n; ++i)
-      if (joined[i / 6] && !structure.held[i / 6][i % 6]) place[i] = free++;
-  }
-
-  void remove_held(const SparseMatrix& whole) {
-    Triplets entries;
-    entries.reserve(whole.nonZeros());
-    for (int c = 0; c < whole.outerSize(); ++c)
-      for (SparseMatrix::InnerIterator it(whole, c); it; ++it)
-        if (place[it.row()] >= 0 && place[it.col()] >= 0)
-          entries.emplace_back(place[it.row()], place[it.col()], it.value());
-    held_removed.resize(free, free);
-    held_removed.setFromTriplets(entries.begin(), entries.end());
-  }
+  NodeMatrix stiffness;  // on the free freedoms
+  std::optional<NodeCholesky> factor;
 
   // K D - F, element by element, each without its rigid motion: the entries of a stiff sliver are so large
   // that they would lose in rounding what moving with its neighbours costs it, which is nothing.
@@ -134,19 +99,9 @@ Result<StructureSolver> StructureSolver::factorise(const Structure& structure, c
                                      kMaxStructureNodes));
   if (auto status = validate(structure); !status) return status.error();
   auto impl = std::make_unique<Impl>(structure);
-  impl->number_freedoms();
-  impl->remove_held(assemble(structure));
   if (context.cancelled()) return cancelled_error();
-  if (impl->free > 0) {
-    impl->factor.cholmod().print = 0;
-    {
-      const OrderingTurn turn;
-      impl->factor.analyzePattern(impl->held_removed);
-    }
-    impl->factor.factorize(impl->held_removed);
-    if (impl->factor.info() != Eigen::Success)
-      return invalid_input("the structure is not held by its supports, or falls apart");
-  }
+  impl->factor = NodeCholesky::factorise(impl->stiffness);
+  if (!impl->factor) return invalid_input("the structure is not held by its supports, or falls apart");
   if (context.cancelled()) return cancelled_error();
   return StructureSolver(std::move(impl));
 }
@@ -154,15 +109,15 @@ Result<StructureSolver> StructureSolver::factorise(const Structure& structure, c
 const Structure& StructureSolver::structure() const { return impl_->structure; }
 
 NodalColumns StructureSolver::solve(const NodalColumns& loads_n) const {
-  SKINFRAME_CHECK(loads_n.rows() == static_cast<Eigen::Index>(impl_->place.size()));
-  NodalColumns right(impl_->free, loads_n.cols());
+  const NodeMatrix& k = impl_->stiffness;
+  SKINFRAME_CHECK(loads_n.rows() == 6 * static_cast<Eigen::Index>(impl_->structure.nodes_mm.size()));
+  NodalColumns right(k.rows(), loads_n.cols());
   for (Eigen::Index i = 0; i < loads_n.rows(); ++i)
-    if (impl_->place[i] >= 0) right.row(impl_->place[i]) = loads_n.row(i);
+    if (const int row = k.row(i); row >= 0) right.row(row) = loads_n.row(i);
+  const NodalColumns solved = impl_->factor->solve(std::move(right));
   NodalColumns d = NodalColumns::Zero(loads_n.rows(), loads_n.cols());
-  if (impl_->free == 0) return d;
-  const NodalColumns solved = impl_->factor.solve(right);
   for (Eigen::Index i = 0; i < loads_n.rows(); ++i)
-    if (impl_->place[i] >= 0) d.row(i) = solved.row(impl_->place[i]);
+    if (const int row = k.row(i); row >= 0) d.row(i) = solved.row(row);
   return d;
 }
 
@@ -173,7 +128,7 @@ void StructureSolver::refine(const NodalColumns& loads_n, NodalColumns* displace
 NodalColumns StructureSolver::reactions_n(const NodalColumns& d, const NodalColumns& f) const {
   NodalColumns out = impl_->out_of_balance(d, f);
   for (Eigen::Index i = 0; i < out.rows(); ++i)
-    if (impl_->place[i] >= 0) out.row(i).setZero();
+    if (impl_->stiffness.row(i) >= 0) out.row(i).setZero();
   return out;
 }
 
@@ -181,7 +136,7 @@ double StructureSolver::residual(const NodalColumns& d, const NodalColumns& f) c
   const NodalColumns rest = impl_->out_of_balance(d, f);
   double worst = 0;
   for (Eigen::Index i = 0; i < rest.rows(); ++i)
-    if (impl_->place[i] >= 0) worst = std::max(worst, rest.row(i).cwiseAbs().maxCoeff());
+    if (impl_->stiffness.row(i) >= 0) worst = std::max(worst, rest.row(i).cwiseAbs().maxCoeff());
   const double largest = f.cwiseAbs().maxCoeff();
   return largest > 0 ? worst / largest : worst;
 }
@@ -214,16 +169,16 @@ Balance StructureSolver::balance(const NodalColumns& d, const NodalColumns& f) c
   return worst;
 }
 
-int StructureSolver::free_count() const { return impl_->free; }
+int StructureSolver::free_count() const { return impl_->stiffness.rows(); }
 VectorXd StructureSolver::multiply_free(const VectorXd& x) const {
-  return impl_->held_removed.selfadjointView<Eigen::Lower>() * x;
+  return impl_->stiffness.lower().selfadjointView<Eigen::Lower>() * x;
 }
-VectorXd StructureSolver::half_solve_free(const VectorXd& x) const {
-  return impl_->factor.solve_part(CHOLMOD_L, impl_->factor.solve_part(CHOLMOD_P, x));
-}
+VectorXd StructureSolver::half_solve_free(const VectorXd& x) const { return impl_->factor->half_solve(x); }
 VectorXd StructureSolver::other_half_solve_free(const VectorXd& x) const {
-  return impl_->factor.solve_part(CHOLMOD_Pt, impl_->factor.solve_part(CHOLMOD_Lt, x));
+  return impl_->factor->other_half_solve(x);
 }
-int StructureSolver::free_index(int node, int freedom) const { return impl_->place[6 * node + freedom]; }
+int StructureSolver::free_index(int node, int freedom) const {
+  return impl_->stiffness.row(6 * node + freedom);
+}
 
 }  // namespace skinframe
