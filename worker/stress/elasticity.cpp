@@ -82,7 +82,8 @@ Result<std::vector<ElasticResponse>> solve_elasticity(const TetMesh& mesh, const
           rhs.middleRows<3>(row).colwise() -= k.block<3, 3>(3 * i, 3 * j) * *prescribed[tet[j]];
     }
   }
-  auto solved = solve_held(std::move(stiffness), std::move(rhs), context);
+  auto solved = solve_held(
+      std::move(stiffness), [&] { return std::move(rhs); }, context);
   if (!solved) return solved.error();
   const Eigen::MatrixXd& solution = *solved;
   if (context.cancelled()) return cancelled_error();

@@ -174,6 +174,21 @@ Eigen::VectorXd pressed_n(const QuadraticMesh& mesh, const SolidCase& solid_case
   return f;
 }
 
+Eigen::MatrixXd right_sides(const QuadraticMesh& mesh, const std::vector<int>& first_row, int rows,
+                            const std::vector<SolidCase>& cases, double weight_density_n_mm3) {
+  const Eigen::VectorXd weight = weight_n(mesh, weight_density_n_mm3);
+  Eigen::MatrixXd right(rows, static_cast<Eigen::Index>(cases.size()));
+  for (std::size_t c = 0; c < cases.size(); ++c) {
+    Eigen::VectorXd f = pressed_n(mesh, cases[c]);
+    if (cases[c].gravity) f += weight;
+    for (std::size_t v = 0; v < first_row.size(); ++v)
+      if (first_row[v] >= 0)
+        right.block<3, 1>(first_row[v], static_cast<Eigen::Index>(c)) =
+            f.segment<3>(3 * static_cast<Eigen::Index>(v));
+  }
+  return right;
+}
+
 SolidAnswer answer_of(const QuadraticMesh& mesh, const std::vector<int>& first_row,
                       const Eigen::Ref<const Eigen::VectorXd>& solution, const Eigen::VectorXd& external_n) {
   SolidAnswer answer;
@@ -200,20 +215,13 @@ Result<std::vector<SolidAnswer>> solve_quadratic_solid(const TetMesh& linear, co
     return invalid_input(fmt::format("{} tetrahedra, more than {}", linear.tets.size(), kMaxQuadraticTets));
   const QuadraticMesh mesh = with_middles(linear);
   const std::vector<char> is_free = free_axes(mesh, held);
-  const auto [first_row, rows] = rows_of(is_free);
+  const auto numbered = rows_of(is_free);
+  const auto& first_row = numbered.first;
+  const int rows = numbered.second;
   if (rows == 0) return invalid_input("the solid is not held by its supports");
-  const Eigen::VectorXd weight = weight_n(mesh, weight_density_n_mm3);
-  Eigen::MatrixXd right(rows, static_cast<Eigen::Index>(cases.size()));
-  for (std::size_t c = 0; c < cases.size(); ++c) {
-    Eigen::VectorXd f = pressed_n(mesh, cases[c]);
-    if (cases[c].gravity) f += weight;
-    for (std::size_t v = 0; v < first_row.size(); ++v)
-      if (first_row[v] >= 0)
-        right.block<3, 1>(first_row[v], static_cast<Eigen::Index>(c)) =
-            f.segment<3>(3 * static_cast<Eigen::Index>(v));
-  }
-  const auto solution =
-      solve_held(stiffness_of(mesh, is_free, isotropic_stiffness(material)), std::move(right), context);
+  const auto solution = solve_held(
+      stiffness_of(mesh, is_free, isotropic_stiffness(material)),
+      [&] { return right_sides(mesh, first_row, rows, cases, weight_density_n_mm3); }, context);
   if (!solution) return solution.error();
   std::vector<SolidAnswer> answers;
   for (std::size_t c = 0; c < cases.size(); ++c)  // pressed once more, rather than kept beside the factor

@@ -5,7 +5,8 @@
 
 namespace skinframe {
 
-Result<Eigen::MatrixXd> solve_held(NodeMatrix&& stiffness, Eigen::MatrixXd&& f, const RunContext& context) {
+Result<Eigen::MatrixXd> solve_held(NodeMatrix&& stiffness, const std::function<Eigen::MatrixXd()>& right_side,
+                                   const RunContext& context) {
   if (context.cancelled()) return cancelled_error();
   std::optional<NodeCholesky> factor;
   {
@@ -14,7 +15,7 @@ Result<Eigen::MatrixXd> solve_held(NodeMatrix&& stiffness, Eigen::MatrixXd&& f, 
   }
   if (!factor) return invalid_input("the tetrahedra are not held by their supports");
   if (context.cancelled()) return cancelled_error();
-  Eigen::MatrixXd u = std::move(f);
+  Eigen::MatrixXd u = right_side();
   factor->solve_in_place(&u);
   if (!u.allFinite()) return invalid_input("the tetrahedra are not held by their supports");
   return u;

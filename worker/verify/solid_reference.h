@@ -13,7 +13,7 @@
 
 namespace skinframe {
 
-inline constexpr std::size_t kMostSolidTetrahedra = 20000;
+inline constexpr std::size_t kMostSolidTetrahedra = 16000;
 
 struct StandingSolid {
   TetMesh mesh;  // of one piece
