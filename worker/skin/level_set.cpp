@@ -12,8 +12,6 @@
 #include <array>
 #include <cmath>
 
-#include "worker/skin/narrow_band.h"
-
 namespace skinframe {
 namespace {
 
@@ -136,11 +134,13 @@ openvdb::FloatGrid::Ptr distance_grid(const TriangleMesh& mesh, double voxel_mm,
   std::vector<openvdb::Vec3I> triangles;
   triangles.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles) triangles.emplace_back(t[0], t[1], t[2]);
-  auto grid = narrow_band(points, triangles, voxel_mm, outer_voxels, inner_voxels);
+  const auto transform = openvdb::math::Transform::createLinearTransform(voxel_mm);
+  auto grid = openvdb::tools::meshToSignedDistanceField<openvdb::FloatGrid>(
+      *transform, points, triangles, {}, static_cast<float>(outer_voxels), static_cast<float>(inner_voxels));
   const auto hidden = hidden_triangles(*grid, points, triangles);
   if (hidden.empty()) return grid;
   auto beside = openvdb::tools::meshToUnsignedDistanceField<openvdb::FloatGrid>(
-      grid->transform(), points, hidden, {}, static_cast<float>(inner_voxels));
+      *transform, points, hidden, {}, static_cast<float>(inner_voxels));
   for (auto it = beside->beginValueOn(); it; ++it) it.setValue(-*it);
   openvdb::tools::changeBackground(beside->tree(), -static_cast<float>(inner_voxels * voxel_mm));
   openvdb::tools::compMax(*grid, *beside);
