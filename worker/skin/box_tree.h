@@ -24,11 +24,6 @@ class BoxTree {
   template <class Meets, class Visit>
   void search(Meets meets, Visit visit) const;
 
-  // visit(item, other) of each pair whose boxes have a point in common, once: of the items at these places of
-  // the tree's own order with those at later ones.
-  template <class Visit>
-  void touching(int first, int end, Visit visit) const;
-
   // Goes through the items whose boxes are nearer to the point than `least`, nearer boxes first; visit(item)
   // may lower `least`. Squared distances, double.
   template <class Visit>

@@ -28,28 +28,6 @@ void BoxTree::search(Meets meets, Visit visit) const {
 }
 
 template <class Visit>
-void BoxTree::touching(int first, int end, Visit visit) const {
-  std::array<int, 64> todo{};
-  for (int i = first; i < end; ++i) {
-    const Eigen::AlignedBox3f& own = leaf_of_[i];
-    int size = 0;
-    todo[size++] = 0;
-    while (size > 0) {
-      const int at = todo[--size];
-      const Node& node = nodes_[at];
-      if (node.end <= i + 1 || !node.box.intersects(own)) continue;
-      if (node.right < 0) {
-        for (int j = std::max(node.first, i + 1); j < node.end; ++j)
-          if (leaf_of_[j].intersects(own)) visit(order_[i], order_[j]);
-        continue;
-      }
-      todo[size++] = node.right;
-      todo[size++] = at + 1;
-    }
-  }
-}
-
-template <class Visit>
 void BoxTree::approach(const Eigen::Vector3d& point, double& least, Visit visit) const {
   std::array<std::pair<int, double>, 64> todo;
   int size = 0;
