@@ -158,6 +158,16 @@ std::vector<std::vector<int>> parts_of(const Lattice& lattice, const Cells& laye
   return parts;
 }
 
+// Somewhere two cells wide, the thinnest strut's diameter. What is narrower everywhere, as where the
+// underside of a level strut comes up between two layers, is no line that a slicer draws; nor does it hold
+// what is above.
+bool is_drawn(const Lattice& lattice, const Cells& layer, const std::vector<int>& part) {
+  const int next_row = lattice.columns();  // no part reaches the last column or row
+  return std::any_of(part.begin(), part.end(), [&](int cell) {
+    return layer[cell + 1] && layer[cell + next_row] && layer[cell + next_row + 1];
+  });
+}
+
 }  // namespace
 
 void claim_layers(const ExportedPrinter& result, Verdict* verdict) {
@@ -201,6 +211,10 @@ void claim_layers(const ExportedPrinter& result, Verdict* verdict) {
               });
             }))
           continue;
+        if (!is_drawn(lattice, layer, part)) {
+          for (const int cell : part) layer[cell] = 0;
+          continue;
+        }
         ++islands;
         area += part_mm2;
         if (part_mm2 > largest) {

@@ -22,6 +22,16 @@ TriangleMesh frustum(double low_half, double low_z, double high_half, double hig
   return mesh;
 }
 
+// Along x, as thin as a sliver across.
+TriangleMesh ridge(double from_x, double to_x, double half_width, double low_z, double high_z) {
+  TriangleMesh mesh = frustum(1, low_z, 1, high_z);
+  for (Eigen::Vector3d& v : mesh.vertices) {
+    v.x() = v.x() < 0 ? from_x : to_x;
+    v.y() *= half_width;
+  }
+  return mesh;
+}
+
 void add(TriangleMesh& to, const TriangleMesh& mesh) {
   const int first = static_cast<int>(to.vertices.size());
   to.vertices.insert(to.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
@@ -57,6 +67,25 @@ TEST(LayerClaim, ATipThatComesDownBesideTheBodyIsSeenThoughItIsOneBodyHigherUp) 
   TriangleMesh body = frustum(5, 0, 5, 20);
   add(body, frustum(0.8, 8, 4, 14, 8));  // joins the column at half its height
   EXPECT_FALSE(holds(body));
+}
+
+// Layers of 0.4 mm lie at 0.2, 0.6 and so on: one goes through the ridge at 10.2, the next through the deck.
+TEST(LayerClaim, ASliverThatComesUpBelowALevelDeckIsNoLineOfASlicer) {
+  TriangleMesh body = frustum(5, 0, 5, 10.4);
+  add(body, ridge(-20, 20, 4, 10.4, 12));  // bridges from the column
+  ASSERT_TRUE(holds(body));
+  TriangleMesh thin = body, wide = body;
+  add(thin, ridge(10, 16, 0.17, 10.1, 10.5));
+  EXPECT_TRUE(holds(thin)) << "narrower than a cell";
+  add(wide, ridge(10, 16, 0.6, 10.1, 10.5));
+  EXPECT_FALSE(holds(wide)) << "as wide as three cells";
+}
+
+TEST(LayerClaim, ASliverHoldsNothing) {
+  TriangleMesh body = frustum(5, 0, 5, 20);
+  add(body, ridge(10, 16, 0.17, 10.1, 10.5));
+  add(body, frustum(2, 10.4, 2, 14, 13));
+  EXPECT_FALSE(holds(body)) << "the block above it starts in the air";
 }
 
 TEST(LayerClaim, ASupportOutsideHoldsWhatWouldStartInTheAir) {
