@@ -134,18 +134,19 @@ Status write_printable(const MergedPrint& print, const PreparedSolid& prepared, 
         "may avoid it",
         printable.crossings_left));
 
-  // The compact mesh takes longest by far: the full one's files are written meanwhile, and tell first of a
-  // disk that fails.
+  // The compact mesh takes longest by far, and all threads: made beside, it would have one only. The full
+  // one's files are written beside it; where there is one thread before it, since they tell of a disk that
+  // fails.
   std::optional<CompactMesh> compact;
+  const JobPart full = [&](const RunContext&) { return write_full(print, prepared, folder, *report); };
+  const JobPart thin = [&](const RunContext& stopping) -> Status {
+    auto thinned = compact_of(print, prepared, *report, stopping);
+    if (!thinned) return thinned.error();
+    compact = std::move(thinned).value();
+    return ok_status();
+  };
   const Status made =
-      side_by_side([&](const RunContext&) { return write_full(print, prepared, folder, *report); },
-                   [&](const RunContext& stopping) -> Status {
-                     auto thinned = compact_of(print, prepared, *report, stopping);
-                     if (!thinned) return thinned.error();
-                     compact = std::move(thinned).value();
-                     return ok_status();
-                   },
-                   context);
+      context.threads > 1 ? side_by_side(thin, full, context) : side_by_side(full, thin, context);
   if (!made) return made;
   report->files.insert(report->files.end(), {"skin-frame.stl", "skin-frame.3mf"});
   if (report->optimised) report->files.push_back("frame-beams.3mf");
