@@ -22,6 +22,8 @@ int main(int argc, char** argv) {
   // For the jobs' processes: none of OpenBLAS' own threads, which take a buffer each whenever they come to
   // it, and then the one that the job has reserved (reserve_blas.h).
   ::setenv("OPENBLAS_NUM_THREADS", "1", 1);
+  // And none of CHOLMOD's, which are four however many the job was given, and spin while others work.
+  ::setenv("OMP_THREAD_LIMIT", "1", 1);
   spdlog::set_default_logger(spdlog::stderr_color_mt("worker"));
   spdlog::set_pattern("%Y-%m-%dT%H:%M:%S.%e %^%l%$ %v");
 
