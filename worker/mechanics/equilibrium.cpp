@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <numbers>
 #include <numeric>
 
@@ -126,6 +127,7 @@ struct EquilibriumSolver::Impl {
     SparseMatrix shifted = stiffness;
     for (int at : diagonal) shifted.valuePtr()[at] += shift;
     factor.factorize(shifted);
+    if (factor.cholmod().status < CHOLMOD_OK) throw std::bad_alloc();  // which Eigen does not see
     return factor.info() == Eigen::Success;
   }
 

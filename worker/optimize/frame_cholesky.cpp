@@ -4,6 +4,7 @@
 #include <Eigen/CholmodSupport>
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <new>
 
 #include "worker/run/ordering_turn.h"
 
@@ -100,6 +101,7 @@ bool FrameCholesky::factorise() {
   if (!(largest > 0)) return false;
   for (int at : impl_->diagonal) impl_->matrix.valuePtr()[at] += kShift * largest;
   impl_->factor.factorize(impl_->matrix);
+  if (impl_->factor.cholmod().status < CHOLMOD_OK) throw std::bad_alloc();  // which Eigen does not see
   return impl_->factor.info() == Eigen::Success;
 }
 

@@ -47,6 +47,7 @@ class NodeCholesky::Factor : public Eigen::CholmodSupernodalLLT<Matrix, Eigen::L
     m_isInitialized = true;
     m_analysisIsOk = true;
     factorize(matrix.lower());
+    if (cholmod().status < CHOLMOD_OK) throw std::bad_alloc();  // Eigen takes a factor without values for one
     return info() == Eigen::Success;
   }
 
@@ -92,6 +93,7 @@ void NodeCholesky::solve_in_place(MatrixXd* x) const {
   for (Eigen::Index at = 0; at < x->cols(); at += kColumnsAtOnce) {
     auto some = x->middleCols(at, std::min(kColumnsAtOnce, x->cols() - at));
     some = MatrixXd(factor_->solve(MatrixXd(some)));
+    if (factor_->info() != Eigen::Success) throw std::bad_alloc();  // what it gave is whatever was there
   }
 }
 VectorXd NodeCholesky::half_solve(const VectorXd& x) const {

@@ -15,7 +15,7 @@ namespace skinframe {
 
 class NodeCholesky {
  public:
-  // None when K is not positive definite.
+  // None when K is not positive definite. Throws std::bad_alloc where memory does not do, as solving does.
   static std::optional<NodeCholesky> factorise(const NodeMatrix& k);
   ~NodeCholesky();
   NodeCholesky(NodeCholesky&&) noexcept;

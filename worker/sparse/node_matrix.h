@@ -28,8 +28,8 @@ class NodeMatrix {
   int rows() const { return first_row_.back(); }
   const Matrix& lower() const { return lower_; }
 
-  // The graph of the nodes, its lower half: node v's rows in first_row()[v] .. first_row()[v + 1], and those
-  // that it is linked to from itself on, ascending.
+  // The graph of the nodes, its lower half: node v's rows are first_row(v) up to first_row(v + 1); it is
+  // linked to those of linked_from(v), itself first, ascending.
   int node_count() const { return static_cast<int>(first_row_.size()) - 1; }
   int first_row(int node) const { return first_row_[node]; }
   std::span<const int> linked_from(int node) const {

@@ -2,8 +2,12 @@
 #include "worker/sparse/node_cholesky.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <Eigen/Dense>
+#include <fstream>
+#include <new>
 
 #include "tests/worker/sparse/random_elements.h"
 
@@ -49,6 +53,32 @@ TEST(NodeCholesky, TakesNodesThatNothingLinksAndNoNodesAtAll) {
   ASSERT_TRUE(factor.has_value());
   EXPECT_TRUE(factor->solve(VectorXd::Constant(2, 8)).isApprox(VectorXd::Constant(2, 2)));
   EXPECT_TRUE(NodeCholesky::factorise(NodeMatrix(1, {0}, {})).has_value());
+}
+
+// More than this process has, and so much.
+void limit_address_space(std::size_t more_bytes) {
+  std::size_t pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlimit limit{pages * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE)) + more_bytes, RLIM_INFINITY};
+  if (::setrlimit(RLIMIT_AS, &limit) != 0) ::_exit(2);
+}
+
+[[noreturn]] void factorise_where_only_the_small_one_fits(const NodeMatrix& small, const NodeMatrix& large) {
+  if (!NodeCholesky::factorise(small)) ::_exit(2);  // BLAS has its buffers now
+  limit_address_space(8 << 20);
+  try {
+    (void)NodeCholesky::factorise(large);
+  } catch (const std::bad_alloc&) {
+    ::_exit(NodeCholesky::factorise(small) ? 0 : 3);
+  }
+  ::_exit(1);
+}
+
+TEST(NodeCholeskyDeath, MemoryThatDoesNotDoIsToldAndNoFactorGiven) {
+  const NodeMatrix small = test::on_a_lattice(4, 6, 4).sparse(),
+                   large = test::on_a_lattice(60, 6, 100).sparse();
+  EXPECT_EXIT(factorise_where_only_the_small_one_fits(small, large), testing::ExitedWithCode(0), "");
+  EXPECT_TRUE(NodeCholesky::factorise(large).has_value()) << "with memory enough";
 }
 
 }  // namespace
